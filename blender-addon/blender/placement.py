@@ -17,6 +17,8 @@ from . import grease_pencil as gp
 from .errors import Problem
 from .frames import kept
 
+NO_CAMERA = "The scene has no camera: add one, or choose one in the panel Footage"
+
 
 class Mapper:
     """Mappings of an object's layers on some frames."""
@@ -70,7 +72,7 @@ def view_of(ob: bpy.types.Object) -> cameras.View:
         return cameras.reference_view(empty, width, height)
     found = camera_of(ob)
     if found is None:
-        raise Problem("The scene has no camera: add one, or choose one in the panel Footage")
+        raise Problem(NO_CAMERA)
     return cameras.camera_view(bpy.context.scene, found, width, height, placement_in(found, ob))
 
 

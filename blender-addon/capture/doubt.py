@@ -75,7 +75,7 @@ def weakest(ob, found: contours.Contours) -> tuple[int, float]:
     """The scene frame where the next key helps most, and its doubt as a share of the parts there, 0 to 1."""
     answer = judged(ob, found)
     if answer.weakest is None:
-        raise Problem("No generated frame: press Track first")
+        raise Problem("Nothing is tracked yet: press Track first")
     frame = answer.weakest
     there = sum(frame in part.made or frame in answer.of(part.number).lost for part in found.parts)
     return frame, min(answer.doubt / max(there, 1), 1.0)

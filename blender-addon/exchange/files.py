@@ -11,6 +11,7 @@ import numpy as np
 
 from ..blender.errors import Problem
 from ..capture.document import VERSION
+from .fields import wrong
 
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height"}
 _PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
@@ -37,35 +38,40 @@ def check(document: Any) -> None:
     """Raises a `Problem` that names the field if `document` does not have the form of a project document."""
     version = document.get("rototoon") if isinstance(document, dict) else None
     if not isinstance(version, int):
-        raise Problem('not a project document: no field "rototoon" with a version number')
+        raise wrong("rototoon", version, f"the version {VERSION}: this is not a project document")
     if version > VERSION:
-        raise Problem(f"document of version {version}; this Rototoon knows version {VERSION}: update the extension")
+        raise wrong("rototoon", version, f"the version {VERSION}: a newer Rototoon wrote it, so update the extension")
     shot = document.get("footage")
-    if not isinstance(shot, dict) or not isinstance(shot.get("pattern"), str):
-        raise Problem("footage.pattern: expected a file name pattern")
+    if not isinstance(shot, dict):
+        raise wrong("footage", shot, "an object with pattern, first, last, fps, width and height")
+    if not isinstance(shot.get("pattern"), str):
+        raise wrong("footage.pattern", shot.get("pattern"), "a file name pattern")
     for name in ("first", "last", "width", "height"):
         if not isinstance(shot.get(name), int):
-            raise Problem(f"footage.{name}: expected a whole number, found {shot.get(name)!r}")
+            raise wrong(f"footage.{name}", shot.get(name), "a whole number")
     if not isinstance(document.get("parts", []), list):
-        raise Problem("parts: expected a list")
+        raise wrong("parts", document["parts"], "a list of parts")
     names = set()
     for index, part in enumerate(document.get("parts", [])):
         _check_part(f"parts[{index}]", part, names)
 
 
 def _check_part(place: str, part: Any, names: set[str]) -> None:
-    if not isinstance(part, dict) or not isinstance(part.get("name"), str):
-        raise Problem(f"{place}.name: expected a name")
+    if not isinstance(part, dict):
+        raise wrong(place, part, "a part: an object with name and keys")
+    if not isinstance(part.get("name"), str):
+        raise wrong(f"{place}.name", part.get("name"), "a name")
     if part["name"] in names:
-        raise Problem(f"{place}.name: {part['name']!r} is the name of another part")
+        raise wrong(f"{place}.name", part["name"], "another name: an earlier part has this one")
     names.add(part["name"])
-    counts = set()
+    first = None
     for field in ("keys", "tracks"):
         for frame, points in _frames(place, field, part.get(field)):
-            array = _points(f"{place}.{field}[{frame}]", points)
-            counts.add(len(array))
-    if len(counts) > 1:
-        raise Problem(f"{place}: keys and tracks have different numbers of points: {sorted(counts)}")
+            on = f"{place}.{field}[{frame}]"
+            array = _points(on, points)
+            first = first or (on, len(array))
+            if len(array) != first[1]:
+                raise Problem(f"{on}: found {len(array)} points, expected {first[1]} as in {first[0]}")
     for field in ("pins", "centers", "confidence", "curves"):
         list(_frames(place, field, part.get(field)))
 
@@ -74,12 +80,12 @@ def _frames(place: str, field: str, entries: Any):
     if entries is None:
         return
     if not isinstance(entries, dict):
-        raise Problem(f"{place}.{field}: expected frames, found {type(entries).__name__}")
+        raise wrong(f"{place}.{field}", entries, "an object with frame numbers as keys")
     for frame, value in entries.items():
         try:
             yield int(frame), value
         except ValueError:
-            raise Problem(f"{place}.{field}: {frame!r} is not a frame number") from None
+            raise wrong(f"{place}.{field}", frame, 'a frame number such as "11"') from None
 
 
 def _points(place: str, points: Any) -> np.ndarray:
@@ -88,7 +94,7 @@ def _points(place: str, points: Any) -> np.ndarray:
     except (TypeError, ValueError):
         array = None
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not np.isfinite(array).all():
-        raise Problem(f"{place}: expected points [x, y] of finite numbers")
+        raise wrong(place, points, "a list of points [x, y] of finite numbers")
     return array
 
 

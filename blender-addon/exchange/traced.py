@@ -12,9 +12,9 @@ import numpy as np
 from ..blender import colours, guard, placement, stroke_lines
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
-from ..blender.errors import Problem
 from ..lines import doubts, tracing
 from ..lines import drawings as dr
+from .fields import wrong
 
 Drawing = dict[int, list[tracing.Placed]]
 
@@ -23,40 +23,42 @@ def checked(project: dict[str, Any]) -> Drawing:
     """The traced strokes of a document by picture number. Raises a `Problem` that names the field that is wrong."""
     drawings = project.get("traced", [])
     if not isinstance(drawings, list):
-        raise Problem("traced: expected a list")
+        raise wrong("traced", drawings, "a list of drawings")
     found: Drawing = {}
     for k, drawing in enumerate(drawings):
         place = f"traced[{k}]"
         frame = drawing.get("frame") if isinstance(drawing, dict) else None
         if not isinstance(frame, int) or not isinstance(drawing.get("strokes"), list):
-            raise Problem(f"{place}: expected a frame and a list of strokes")
+            raise wrong(place, drawing, "a drawing: an object with frame and a list of strokes")
         strokes = [_stroke(f"{place}.strokes[{i}]", each) for i, each in enumerate(drawing["strokes"])]
         if len({stroke.number for stroke in strokes}) < len(strokes):
-            raise Problem(f"{place}: expected each track once on a frame")
+            raise wrong(f"{place}.strokes", sorted(stroke.number - 1 for stroke in strokes), "each track once on a frame")
         found[frame] = strokes
     return found
 
 
 def _stroke(place: str, stroke: Any) -> tracing.Placed:
-    if not isinstance(stroke, dict) or not isinstance(stroke.get("track"), int) or stroke["track"] < 0:
-        raise Problem(f"{place}.track: expected a number from 0")
+    if not isinstance(stroke, dict):
+        raise wrong(place, stroke, "a stroke: an object with track and points")
+    if not isinstance(stroke.get("track"), int) or stroke["track"] < 0:
+        raise wrong(f"{place}.track", stroke.get("track"), "a number from 0")
     points = _numbers(f"{place}.points", stroke.get("points"))
     if points.ndim != 2 or points.shape[1:] != (2,) or not len(points):
-        raise Problem(f"{place}.points: expected points [x, y]")
+        raise wrong(f"{place}.points", stroke.get("points"), "a list of points [x, y]")
     widths = np.full(len(points), np.nan)
     if stroke.get("widths"):
         widths = _numbers(f"{place}.widths", stroke["widths"])
         if widths.shape != (len(points),):
-            raise Problem(f"{place}.widths: expected one number for each point")
+            raise wrong(f"{place}.widths", stroke["widths"], f"one number for each of the {len(points)} points")
     colour = _numbers(f"{place}.colour", stroke.get("colour") or [0.0] * 3)
     if colour.shape != (3,):
-        raise Problem(f"{place}.colour: expected three numbers")
+        raise wrong(f"{place}.colour", stroke["colour"], "three numbers")
     sure = stroke.get("confidence", 1.0)
     if isinstance(sure, bool) or not isinstance(sure, (int, float)) or not 0 <= sure <= 1:
-        raise Problem(f"{place}.confidence: expected a number from 0 to 1")
+        raise wrong(f"{place}.confidence", sure, "a number from 0 to 1")
     closed, fill = bool(stroke.get("closed")), stroke.get("fill", False)
     if not isinstance(fill, bool) or fill and not closed:
-        raise Problem(f"{place}.fill: expected true or false, and a closed stroke for true")
+        raise wrong(f"{place}.fill", fill, "true or false, and true only for a closed stroke")
     return tracing.Placed(stroke["track"] + 1, points, closed, widths, colour, float(sure), fill)
 
 
@@ -66,7 +68,7 @@ def _numbers(place: str, values: Any) -> np.ndarray:
     except (TypeError, ValueError):
         array = np.array(np.nan)
     if not np.isfinite(array).all():
-        raise Problem(f"{place}: expected finite numbers")
+        raise wrong(place, values, "finite numbers")
     return array
 
 

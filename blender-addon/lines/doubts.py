@@ -19,7 +19,7 @@ from rototoon.lines import doubts
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
-from ..capture.tracking import listed
+from ..common.wording import listed
 from . import drawings as dr
 
 SURE, DOUBTFUL, LOST = 0, 1, 2

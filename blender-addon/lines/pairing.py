@@ -16,6 +16,7 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
+from ..common.wording import counted
 from ..tween import keys as ks
 from ..tween import pairing
 from . import records
@@ -172,7 +173,7 @@ class LinePairing(pairing.Pairing):
     def summary(self) -> str:
         """The pairs in words."""
         same = sum(row.kind == tween.PAIR for row in self.pairs)
-        said = [f"{same} strokes are the same"]
+        said = [f"{counted(same, 'stroke')} {'is' if same == 1 else 'are'} the same"]
         ended = sum(row.kind == tween.VANISHED for row in self.pairs)
         begun = sum(row.kind == tween.APPEARED for row in self.pairs)
         said += [f"{ended} end"] if ended else []

@@ -14,6 +14,7 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
+from ..common.wording import counted
 from . import keys as ks
 from . import pairs, records, sheets, tweening
 from .charts import Choices
@@ -274,11 +275,11 @@ class Pairing:
         hand = sum(row.by_hand for row in self.pairs)
         pieces = sum(row.kind in (tween.SPLIT, tween.JOINED, tween.CHAINED) for row in self.pairs)
         alone = sum(row.kind in (tween.VANISHED, tween.APPEARED) for row in self.pairs)
-        said = f"{paired} pairs"
+        said = counted(paired, "pair")
         if hand:
             said += f", {hand} decided by hand"
         if pieces:
-            said += f", {pieces} pieces"
+            said += f", {counted(pieces, 'piece')}"
         return said + (f", {alone} without counterpart" if alone else "")
 
 

@@ -5,7 +5,8 @@ Only what an artist needs all the time is open at first.
 
 import bpy
 
-from ..capture import absence, ends, live, stand, tracking
+from ..capture import absence, ends, live, stand
+from ..common.wording import counted
 from ..style import clip_browser, limbs
 from ..tween import spacing_curve
 from .clips import draw_browser
@@ -123,7 +124,7 @@ def said_of_held(context) -> str:
     if held is None:
         return ""
     counts = ((held.lines, "whole line"), (held.points, "point"), (held.middles, "middle"))
-    return "Held here: " + ", ".join(tracking.counted(count, noun) for count, noun in counts if count)
+    return "Held here: " + ", ".join(counted(count, noun) for count, noun in counts if count)
 
 
 class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
@@ -277,7 +278,7 @@ class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
         layout.operator_menu_enum("rototoon.choose_body", "body", text=f"Body: {limbs.body_name(context.object)}", icon="ARMATURE_DATA")
         layout.operator_menu_enum("rototoon.define_limbs", "point", text="Define Limbs", icon="BONE_DATA")
         count = len(limbs.defined(context.object))
-        lines = [f"{count} limbs"] if count else ["Draw a line across a limb", f'on the layer "{limbs.LAYER}"']
+        lines = [counted(count, "limb")] if count else ["Draw a line across a limb", f'on the layer "{limbs.LAYER}"']
         labels = layout.column(align=True)
         for line in lines:
             labels.label(text=line)

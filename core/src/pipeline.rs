@@ -299,12 +299,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
 }
 
 fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
-    let index = |name: &String| {
-        scene.parts.iter().position(|part| part.name == *name).ok_or_else(|| {
-            let known: Vec<_> = scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
-            PipelineError::Request(format!("no part {name:?}: the document has {}", known.join(", ")))
-        })
-    };
+    let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::Request(error.to_string()));
     names.iter().map(index).collect()
 }
 

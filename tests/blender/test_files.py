@@ -86,12 +86,12 @@ def test_import_into_the_active_object(addon, tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda d: d.update(rototoon=2), "version 2"),
-        (lambda d: d.pop("rototoon"), "not a project document"),
-        (lambda d: d["footage"].pop("width"), "footage.width"),
-        (lambda d: d["parts"][1]["keys"].update({"5": [[1, 2]]}), "different numbers of points"),
-        (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), "not a frame number"),
-        (lambda d: d["parts"][1].update(name="box"), "name of another part"),
+        (lambda d: d.update(rototoon=2), "rototoon: found 2, expected the version 1"),
+        (lambda d: d.pop("rototoon"), "rototoon: found nothing, .*not a project document"),
+        (lambda d: d["footage"].pop("width"), "footage.width: found nothing, expected a whole number"),
+        (lambda d: d["parts"][1]["keys"].update({"5": [[1, 2]]}), r"parts\[1\].keys\[5\]: found 1 points, expected \d+ as in parts\[1\].keys\[2\]"),
+        (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), 'found "x", expected a frame number'),
+        (lambda d: d["parts"][1].update(name="box"), 'name: found "box", expected another name'),
         (lambda d: d["parts"][1]["keys"]["2"].append(["a", None]), r"parts\[1\].keys\[2\]"),
         (lambda d: d["footage"].update(pattern="gone/f_%d.png"), "footage is missing"),
     ],

@@ -78,7 +78,7 @@ def test_the_shape_goes_into_a_document_and_comes_back(addon, film, tmp_path):
         assert line.number == before[frame][0].number and np.allclose(line.pixels, before[frame][0].pixels, atol=1e-3)
     document["traced"][1]["strokes"][0]["closed"] = False
     path.write_text(json.dumps(document))
-    with pytest.raises(RuntimeError, match=r"traced\[1\].strokes\[0\].fill: expected true or false, and a closed stroke"):
+    with pytest.raises(RuntimeError, match=r"traced\[1\].strokes\[0\].fill: found true, expected true or false, and true only for a closed stroke"):
         bpy.ops.rototoon.import_document(filepath=str(path))
 
 

@@ -185,5 +185,5 @@ def test_marks_are_kept_with_the_document(addon, tmp_path):
     assert bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1]) == {"FINISHED"}
     assert bpy.ops.rototoon.depth_mark(front=names[1], behind=names[2]) == {"FINISHED"}
     assert addon("style.limbs").marks(ob) == [{"front": names[1], "behind": names[2]}]
-    with pytest.raises(RuntimeError, match="No part 'hat'"):
+    with pytest.raises(RuntimeError, match='No part "hat"; the object has'):
         bpy.ops.rototoon.depth_mark(front="hat", behind=names[1])

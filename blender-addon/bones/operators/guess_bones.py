@@ -5,6 +5,7 @@ from rototoon.style import KEY_POINTS
 
 from ...blender import guard
 from ...common.operators import Guarded, OnArmature
+from ...common.wording import counted
 from .. import key_points
 
 
@@ -18,7 +19,7 @@ class ROTOTOON_OT_guess_bones(Guarded, OnArmature, bpy.types.Operator):
     def run(self, context) -> str:
         found = key_points.guess(context.object)
         missing = [point for point in KEY_POINTS if point not in found]
-        return f"{len(found)} key points" + (f"; choose bones for {', '.join(missing)}" if missing else "")
+        return counted(len(found), "key point") + (f"; choose bones for {', '.join(missing)}" if missing else "")
 
 
 CLASSES = (ROTOTOON_OT_guess_bones,)

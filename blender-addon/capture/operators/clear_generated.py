@@ -5,6 +5,7 @@ import bpy
 from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import writing
 from ..polls import WithGenerated
 
@@ -44,7 +45,7 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
             cleared += writing.clear(layer, frames, keep_corrected=keep)
         ob.data.update_tag()
         self.warn(guard.left_out(every))
-        return f"{cleared} generated drawings removed" + (f", {kept} with corrections kept" if kept else "")
+        return f"{counted(cleared, 'generated drawing')} removed" + (f", {kept} with corrections kept" if kept else "")
 
 
 CLASSES = (ROTOTOON_OT_clear_generated,)

@@ -11,6 +11,7 @@ from ...blender import footage, movie, preferences, stage
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
+from ...common.wording import counted
 
 
 class FootageOperator(Long):
@@ -48,7 +49,7 @@ class FootageOperator(Long):
         shot = stage.Shot(
             frames.pattern, frames.first, frames.last, width, height, frames.fps, start, self._source.path
         )
-        return shot, f"{removed} older movies were removed from the cache" if removed else ""
+        return shot, f"{counted(removed, 'older movie')} {'was' if removed == 1 else 'were'} removed from the cache" if removed else ""
 
     def _sequence_shot(self, context) -> tuple[stage.Shot, str]:
         sequence, scene = self._sequence, context.scene
@@ -56,7 +57,8 @@ class FootageOperator(Long):
         start = footage.first_frame(self._source, sequence, scene.frame_start)
         fps = scene.render.fps / scene.render.fps_base
         shot = stage.Shot(sequence.pattern, sequence.first, sequence.last, width, height, fps, start)
-        return shot, f"{sequence.missing} pictures beyond a gap are left out" if sequence.missing else ""
+        missing = sequence.missing
+        return shot, f"{counted(missing, 'picture')} beyond a gap {'is' if missing == 1 else 'are'} left out" if missing else ""
 
 
 def used_folders() -> set[str]:

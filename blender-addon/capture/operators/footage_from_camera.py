@@ -21,17 +21,17 @@ class ROTOTOON_OT_footage_from_camera(FootageOperator, OnDrawing, bpy.types.Oper
             return False
         camera = placement.camera_of(context.object)
         if camera is None:
-            cls.poll_message_set("The scene has no camera")
+            cls.poll_message_set(placement.NO_CAMERA)
             return False
         if not len(camera.data.background_images):
-            cls.poll_message_set(f'Camera "{camera.name}" has no background image')
+            cls.poll_message_set(f'Camera "{camera.name}" has no background image: add one in its properties, Background Images')
             return False
         return True
 
     def source(self, context) -> footage.Source:
         camera = placement.camera_of(context.object)
         if camera is None:
-            raise Problem("The scene has no camera")
+            raise Problem(placement.NO_CAMERA)
         return footage.background_source(camera)[0]
 
     def apply(self, context, shot):

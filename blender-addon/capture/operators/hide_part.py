@@ -7,7 +7,8 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
-from .. import absence, contours, doubt, live, tracking
+from ...common.wording import listed
+from .. import absence, contours, doubt, live
 
 
 class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
@@ -49,7 +50,7 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
             return f'"{item.name}" is there again' + ("" if ob.rototoon.live else ": press Track")
         pictures = self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture]
         absence.hide(item, pictures)
-        where = tracking.listed([number + ob.rototoon.frame_offset for number in pictures])
+        where = listed([number + ob.rototoon.frame_offset for number in pictures])
         _remove(layer, part, [number + ob.rototoon.frame_offset for number in pictures])
         ob.data.update_tag()
         live.note(ob)

@@ -4,6 +4,7 @@ import bpy
 
 from ...blender import guard
 from ...common.operators import Guarded, OnContours
+from ...common.wording import counted
 from .. import document, identity, tracking
 
 
@@ -25,7 +26,7 @@ class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
         identity.write(ob, reading.found, reading.decisions)
         ob.data.update_tag()
         self.warn(guard.left_out(layers, hidden=True))
-        return f"{reading.decisions.matched} strokes matched, {len(reading.decisions.created)} new parts"
+        return f"{counted(reading.decisions.matched, 'stroke')} matched, {counted(len(reading.decisions.created), 'new part')}"
 
 
 CLASSES = (ROTOTOON_OT_match_contours,)

@@ -6,7 +6,8 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
-from .. import contours, document, identity, tracking
+from ...common.wording import counted
+from .. import contours, document, identity
 
 
 class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
@@ -45,7 +46,7 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
             made += _make_key(gp.find_layer(ob, name), sources, frame)
         ob.data.update_tag()
         self.warn(guard.left_out(named, hidden=True))
-        return f"Key on frame {frame}: {tracking.counted(made, 'contour')}"
+        return f"Key on frame {frame}: {counted(made, 'contour')}"
 
     def _wanted(self, ob, found):
         frame = bpy.context.scene.frame_current

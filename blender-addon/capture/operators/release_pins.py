@@ -5,6 +5,7 @@ import bpy
 from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import corrections
 from ..polls import OnTracked
 
@@ -44,7 +45,7 @@ class ROTOTOON_OT_release_pins(Guarded, OnTracked, bpy.types.Operator):
         self.warn(guard.left_out(layers))
         if not released:
             return "There was nothing to release"
-        return f"{released} pins released" + ("" if ob.rototoon.live else ": press Track")
+        return f"{counted(released, 'pin')} released" + ("" if ob.rototoon.live else ": press Track")
 
 
 CLASSES = (ROTOTOON_OT_release_pins,)

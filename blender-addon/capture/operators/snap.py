@@ -8,6 +8,7 @@ from ...blender import guard, preferences
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnContours
+from ...common.wording import counted
 from .. import document, identity, sessions, snapping
 
 
@@ -43,7 +44,7 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
         curves = self._curves(reading)
         strokes = snapping.write(self._ob, curves, reading.found, reading.mapper)
         self._ob.data.update_tag()
-        return f'{strokes} lines on the layer "{self._ob.rototoon.snapped_layer}"'
+        return f'{counted(strokes, "line")} on the layer "{self._ob.rototoon.snapped_layer}"'
 
     def _curves(self, reading):
         offset, curves = self._ob.rototoon.frame_offset, {}

@@ -6,6 +6,7 @@ from ...blender import guard, masks
 from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnContours
+from ...common.wording import counted
 from .. import outlines
 
 
@@ -38,7 +39,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
         if not parts:
             raise Problem("No part has a key yet: press Track, or New Key Here, first")
         mask = masks.write(context, name, parts, settings.width, settings.height)
-        return f'{len(parts)} parts in the mask "{mask.name}"'
+        return f'{counted(len(parts), "part")} in the mask "{mask.name}"'
 
 
 CLASSES = (ROTOTOON_OT_contours_to_mask,)

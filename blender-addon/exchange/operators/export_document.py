@@ -8,6 +8,7 @@ from ...blender import guard
 from ...blender.errors import Problem
 from ...capture import document
 from ...common.operators import Guarded, OnShapes
+from ...common.wording import counted
 from .. import files, traced
 
 
@@ -37,8 +38,8 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         if lines:
             reading.document["traced"] = lines
         files.save(path, reading.document)
-        found = [f"{len(reading.document['parts'])} parts"] if reading.document["parts"] or not lines else []
-        found += [f"traced lines of {len(lines)} frames"] if lines else []
+        found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not lines else []
+        found += [f"traced lines of {counted(len(lines), 'frame')}"] if lines else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
 
 

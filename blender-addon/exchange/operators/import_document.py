@@ -8,6 +8,7 @@ from ...blender import footage, stage, view
 from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import files, importing, traced
 
 
@@ -61,8 +62,8 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         lines = traced.draw(ob, project)
         sessions.drop(ob)
         ob.data.update_tag()
-        also = f" and {lines} traced strokes" if lines else ""
-        return f"{len(ob.rototoon.parts)} parts{also} from {os.path.basename(path)}"
+        also = f" and {counted(lines, 'traced stroke')}" if lines else ""
+        return f"{counted(len(ob.rototoon.parts), 'part')}{also} from {os.path.basename(path)}"
 
     def _shot(self, context, shot: dict, folder: str) -> stage.Shot:
         pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))

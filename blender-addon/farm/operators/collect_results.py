@@ -3,9 +3,9 @@
 import bpy
 
 from ...blender.errors import Problem
-from ...capture.tracking import counted, listed
 from ...common import jobs
 from ...common.operators import Long
+from ...common.wording import counted, listed
 from .. import collecting
 from .send_to_farm import folder_of
 

@@ -8,6 +8,7 @@ from ...blender import guard
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
+from ...common.wording import counted
 from .. import batch, files, sending
 
 NAMED = 3
@@ -56,7 +57,7 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
             ("NONE", "None", "Only the manifest, for the command rototoon batch"),
         ),
     )
-    chunk: bpy.props.IntProperty(name="Shots a Task", description="Shots that a worker gets at a time, with OpenJD and OpenCue", default=4, min=1, max=1000)
+    chunk: bpy.props.IntProperty(name="Shots per Task", description="Shots that a worker gets at a time, with OpenJD and OpenCue", default=4, min=1, max=1000)
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context, _event):
@@ -84,8 +85,7 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
             self.warn("left out: " + "; ".join(_first(left)))
         if any(not shot["blend"] for shot in shots):
             self.warn("this file was never saved: save it, so that the results find it again")
-        count = "1 shot" if len(shots) == 1 else f"{len(shots)} shots"
-        return f"{count} in {os.path.join(self._folder, batch.MANIFEST)}"
+        return f"{counted(len(shots), 'shot')} in {os.path.join(self._folder, batch.MANIFEST)}"
 
 
 def _first(texts: list[str]) -> list[str]:

@@ -6,6 +6,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
+from ...common.wording import counted
 from .. import drawings as dr
 from .. import records
 
@@ -38,7 +39,7 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
             kept.pop(found.name, None)
         records.write(ob.data, kept)
         ob.data.update_tag()
-        return f"{removed} traced drawings removed"
+        return f"{counted(removed, 'traced drawing')} removed"
 
 
 def _layers(ob) -> list:

@@ -9,6 +9,7 @@ from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
+from ...common.wording import counted
 from .. import drawings as dr
 from .. import records, spreading
 from .match_lines import numbered
@@ -101,13 +102,14 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         records.write(self._ob.data, kept)
         self._ob.data.update_tag()
         if self._left_out:
-            self.warn(f"{self._left_out} strokes are curves with handles or knots and were not reshaped")
+            curves = "1 stroke is a curve" if self._left_out == 1 else f"{self._left_out} strokes are curves"
+            self.warn(f"not reshaped: {curves} with handles or knots")
         edited = sum(len(edit.edited) for _, _, edit, *_ in self._work_on)
         deleted = sum(len(edit.deleted) for _, _, edit, *_ in self._work_on)
         frames = len({frame for name, frame, _ in self._done}) - len({shown for _, shown, *_ in self._work_on})
         said = [f"{edited} edited"] if edited else []
         said += [f"{deleted} deleted"] if deleted else []
-        return f"{' and '.join(said)} {'stroke' if edited + deleted == 1 else 'strokes'}, on {frames} other {'frame' if frames == 1 else 'frames'}"
+        return f"{' and '.join(said)} {'stroke' if edited + deleted == 1 else 'strokes'}, on {counted(frames, 'other frame')}"
 
 
 def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:

@@ -6,8 +6,8 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard, preferences
-from ...capture.tracking import listed
 from ...common.operators import Long, OnDrawing
+from ...common.wording import counted, listed
 from .. import drawings as dr
 from .. import plan as pl
 from .. import doubts, properties, tracing
@@ -97,7 +97,7 @@ def told(done: tracing.Done) -> str:
     if not done.frames:
         return "All of these frames have drawings of yours: nothing was drawn"
     strokes, frames = len(done.numbers), len(done.frames)
-    text = f"{strokes} {'stroke' if strokes == 1 else 'strokes'} on {frames} {'frame' if frames == 1 else 'frames'}"
+    text = f"{counted(strokes, 'stroke')} on {counted(frames, 'frame')}"
     if done.kept:
         changed = "1 drawing that you had changed is" if done.kept == 1 else f"{done.kept} drawings that you had changed are"
         text += f", {changed} a key now" if done.kept == 1 else f", {changed} keys now"

@@ -9,6 +9,7 @@ from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
+from ...common.wording import counted
 from .. import fitting
 
 
@@ -119,7 +120,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             return "No stroke became lighter"
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
-        return f"{strokes} strokes fitted: {before} points became {after}" + (f", {skipped} not changed" if skipped else "")
+        return f"{counted(strokes, 'stroke')} fitted: {before} points became {after}" + (f", {skipped} not changed" if skipped else "")
 
 
 CLASSES = (ROTOTOON_OT_fit_strokes,)

@@ -9,6 +9,7 @@ from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
+from ...common.wording import counted
 from .. import hidden
 
 
@@ -88,7 +89,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         self._need_open()
         drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
-        return f"{parts} hidden lines on {drawings} drawings" if drawings else "Nothing is hidden"
+        return f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}" if drawings else "Nothing is hidden"
 
 
 CLASSES = (ROTOTOON_OT_hidden_lines,)

@@ -57,7 +57,10 @@ class ROTOTOON_OT_choose_body(Guarded, OnDrawing, bpy.types.Operator):
             self.warn(f"this body has no {', '.join(lost)}: their lines mark nothing now")
         gone = before - len(limbs.defined(ob))
         if gone > 0:
-            self.warn(f"{gone} limbs do not fit this body and are gone; undo brings them back")
+            told = "limb does not fit this body and is gone; undo brings it back"
+            if gone > 1:
+                told = "limbs do not fit this body and are gone; undo brings them back"
+            self.warn(f"{gone} {told}")
         body = bodies.of(ob)
         return f"{body.name}: {len(body.points)} key points"
 

@@ -10,6 +10,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...capture import document, identity
 from ...common.operators import Guarded, OnContours
+from ...common.wording import counted
 from .. import bodies, limbs
 
 
@@ -49,7 +50,7 @@ class ROTOTOON_OT_define_limbs(Guarded, OnContours, bpy.types.Operator):
         if lines < 2:
             return f"{self.point}: draw the line of the next key point"
         made = limbs.define(ob, document.read(ob, results=True))
-        return f"{lines} key points, {len(made)} limbs"
+        return f"{counted(lines, 'key point')}, {counted(len(made), 'limb')}"
 
 
 CLASSES = (ROTOTOON_OT_define_limbs,)

@@ -33,11 +33,12 @@ class ROTOTOON_OT_depth_mark(Guarded, OnContours, bpy.types.Operator):
         names = [part.name for part in ob.rototoon.parts]
         for name in (self.front, self.behind):
             if name not in names:
-                raise Problem(f"No part {name!r}: found {', '.join(names)}")
+                known = ", ".join(f'"{each}"' for each in names) or "no parts"
+                raise Problem(f'No part "{name}"; the object has {known}')
         if self.front == self.behind:
-            raise Problem(f"{self.front!r} cannot be in front of itself")
+            raise Problem(f'"{self.front}" cannot be in front of itself')
         limbs.add_mark(ob, {"front": self.front, "behind": self.behind})
-        return f"{self.front} is in front of {self.behind}"
+        return f'"{self.front}" is in front of "{self.behind}"'
 
 
 CLASSES = (ROTOTOON_OT_depth_mark,)

@@ -8,6 +8,7 @@ from rototoon.style import add_to_library, import_motion
 
 from ...blender.errors import Problem
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import clip_browser
 from ..clip_library import folder_of
 from ..clip_properties import shared
@@ -78,8 +79,8 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
         clip_browser.refresh(folder)
         clips = [file["clips"][0] for _, file in made]
         if len(clips) == 1:
-            return f'"{clips[0]["motion"]}" by "{clips[0]["character"]}", {len(clips[0]["points"])} frames'
-        return f"{len(clips)} clips"
+            return f'"{clips[0]["motion"]}" by "{clips[0]["character"]}", {counted(len(clips[0]["points"]), "frame")}'
+        return counted(len(clips), "clip")
 
     def _paths(self) -> list[str]:
         folder = bpy.path.abspath(self.directory)

@@ -3,6 +3,7 @@
 import bpy
 
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import clip_browser, clip_library
 from ..clip_properties import shared
 
@@ -18,7 +19,7 @@ class ROTOTOON_OT_refresh_clips(Guarded, bpy.types.Operator):
     def run(self, context) -> str:
         found = clip_browser.refresh(clip_library.folder_of(context.object, self.folder))
         damaged = sum(bool(row.trouble) for row in found.rows)
-        said = f"{len(found.rows) - damaged} clips" + (f", {damaged} cannot be used" if damaged else "")
+        said = counted(len(found.rows) - damaged, "clip") + (f", {damaged} cannot be used" if damaged else "")
         return said + "".join(f"; {trouble}" for trouble in found.troubles)
 
 

@@ -6,6 +6,7 @@ from rototoon.style import add_to_library, capture_clip
 from ...blender import guard
 from ...capture import document
 from ...common.operators import Guarded, OnContours
+from ...common.wording import counted
 from .. import clip_browser, limbs
 from ..clip_library import folder_of
 from ..clip_properties import Performance, shared
@@ -39,7 +40,7 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
         clip_browser.refresh(folder)
         count = len(made.clips["clips"][0]["points"])
         guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
-        return f'"{self.motion}" by "{character}", {count} frames{guessed}'
+        return f'"{self.motion}" by "{character}", {counted(count, "frame")}{guessed}'
 
 
 CLASSES = (ROTOTOON_OT_save_clip,)

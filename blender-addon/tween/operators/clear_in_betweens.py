@@ -6,6 +6,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
+from ...common.wording import counted
 from .. import keys as ks
 from .. import tweening
 from .tweening_base import LAYERS
@@ -46,7 +47,7 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
                     continue
             removed += tweening.clear(ob, [layer], *span)
         self.warn(guard.left_out(st.drawn_layers(ob, self.layers == "ACTIVE")))
-        return f"{removed} in-betweens removed" if removed else "There are no in-betweens"
+        return f"{counted(removed, 'in-between')} removed" if removed else "There are no in-betweens"
 
 
 CLASSES = (ROTOTOON_OT_clear_in_betweens,)

@@ -6,6 +6,7 @@ from ...blender import guard, preferences
 from ...blender import strokes as st
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
+from ...common.wording import counted
 from .. import keys as ks
 from .. import tweening
 from ..charts import Choices
@@ -81,12 +82,12 @@ class Tweening(OnKeys, Long):
 
     def finish(self, context, work) -> str:
         done = tweening.finish(self._ob, self._plan)
-        spans = "1 span" if done.spans == 1 else f"{done.spans} spans"
-        said = f"{done.drawings} in-betweens in {spans}" if done.spans else "Nothing had changed"
+        said = f"{counted(done.drawings, 'in-between')} in {counted(done.spans, 'span')}" if done.spans else "Nothing had changed"
         if done.spans and self._plan.current:
-            said += f", {self._plan.current} spans were up to date"
+            said += f", {counted(self._plan.current, 'span')} up to date"
         if done.keys:
-            said += f", {done.keys} drawings that you had changed are keys now"
+            said += f", {counted(done.keys, 'drawing')} that you had changed {'is a key' if done.keys == 1 else 'are keys'} now"
         if self._plan.blank:
-            self.warn(f"{self._plan.blank} spans with a blank key were left out")
+            left_out = counted(self._plan.blank, "span")
+            self.warn(f"{left_out} with a blank key {'was' if self._plan.blank == 1 else 'were'} left out")
         return said

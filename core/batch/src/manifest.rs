@@ -12,6 +12,7 @@
 
 use crate::step::{self, Step};
 use rototoon::file;
+use rototoon::project::described;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -92,7 +93,9 @@ impl Manifest {
     /// All problems, a line each.
     pub fn parse(text: &str, folder: &Path, check: CheckWords) -> Result<Self, Vec<String>> {
         let value: Value = serde_json::from_str(text).map_err(|error| vec![format!("no JSON: {error}")])?;
-        let Value::Object(fields) = value else { return Err(vec!["found no object, expected one".into()]) };
+        let Value::Object(fields) = value else {
+            return Err(vec![format!("found {}, expected an object", described(Some(&value)))]);
+        };
         match fields.get("rototoon_batch").and_then(Value::as_u64) {
             Some(VERSION) => {}
             Some(found) => return Err(vec![format!("rototoon_batch: found {found}, expected {VERSION}")]),
@@ -117,7 +120,7 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn shots(&mut self, value: Option<&Value>, common: &[Step]) -> Vec<Shot> {
         let Some(Value::Array(list)) = value else {
-            self.problems.push("shots: expected a list of shots".into());
+            self.problems.push(format!("shots: found {}, expected a list of shots", described(value)));
             return Vec::new();
         };
         if list.is_empty() || list.len() > MOST_SHOTS {
@@ -130,7 +133,7 @@ impl Reader<'_> {
     fn shot(&mut self, index: usize, value: &Value, common: &[Step]) -> Option<Shot> {
         let place = format!("shots[{index}]");
         let Value::Object(fields) = value else {
-            self.problems.push(format!("{place}: expected an object"));
+            self.problems.push(format!("{place}: found {}, expected an object", described(Some(value))));
             return None;
         };
         self.unknown(&format!("{place}."), fields, &["name", "project", "blend", "steps"]);
@@ -170,7 +173,7 @@ impl Reader<'_> {
         match value.and_then(Value::as_str) {
             Some(text) if !text.is_empty() && !text.contains('\0') => Some(self.folder.join(text)),
             _ => {
-                self.problems.push(format!("{place}: expected the path of a file"));
+                self.problems.push(format!("{place}: found {}, expected the path of a file", described(value)));
                 None
             }
         }
@@ -178,7 +181,7 @@ impl Reader<'_> {
 
     fn steps(&mut self, place: &str, value: &Value) -> Vec<Step> {
         let Value::Array(list) = value else {
-            self.problems.push(format!("{place}: expected a list of steps"));
+            self.problems.push(format!("{place}: found {}, expected a list of steps", described(Some(value))));
             return Vec::new();
         };
         let mut steps: Vec<Step> = Vec::new();
@@ -253,7 +256,7 @@ mod tests {
 
     #[test]
     fn each_problem_has_a_line() {
-        assert_eq!(problems("[]"), ["found no object, expected one"]);
+        assert_eq!(problems("[]"), ["found [], expected an object"]);
         assert_eq!(problems("{}"), ["rototoon_batch: found nothing, expected the version 1"]);
         assert_eq!(problems(r#"{"rototoon_batch": 2}"#), ["rototoon_batch: found 2, expected 1"]);
         let text = r#"{"rototoon_batch": 1, "step": 1, "steps": [{"do": "fly"}, {"do": "track"}, {"do": "track"}], "shots": [
@@ -265,8 +268,8 @@ mod tests {
             "steps[2]: found a second step that writes \"tracked.json\"",
             "shots[0].name: found \"a/b\"",
             "shots[2].name: found \"X\", which shots[1] has too",
-            "shots[2].project: expected the path",
-            "shots[3]: expected an object",
+            "shots[2].project: found \"\", expected the path",
+            "shots[3]: found 7, expected an object",
         ];
         assert_eq!(found.len(), begins.len(), "{found:#?}");
         for (found, begin) in found.iter().zip(begins) {

@@ -4,6 +4,7 @@
 //! manifest are the options of the subcommand, with `_` for `-`. `to` is the name of what it writes, without a folder.
 
 use crate::manifest::safe_name;
+use rototoon::project::described;
 use serde_json::Value;
 
 /// What a step does.
@@ -57,7 +58,9 @@ impl Step {
     ///
     /// Field, what was found and what was expected.
     pub fn read(value: &Value) -> Result<Self, String> {
-        let Value::Object(fields) = value else { return Err("expected an object such as {\"do\": \"track\"}".into()) };
+        let Value::Object(fields) = value else {
+            return Err(format!("found {}, expected an object such as {{\"do\": \"track\"}}", described(Some(value))));
+        };
         let name = fields.get("do").and_then(Value::as_str).unwrap_or_default();
         let Some((kind, _, default)) = KINDS.into_iter().find(|(_, known, _)| *known == name) else {
             let known: Vec<_> = KINDS.iter().map(|(_, name, _)| *name).collect();
@@ -106,7 +109,7 @@ fn output(kind: Kind, default: Option<&str>, to: Option<&Value>) -> Result<Optio
         Kind::Track | Kind::Snap | Kind::Trace | Kind::Tween => "result.json",
     };
     let Some(name) = to.map_or(default, Value::as_str) else {
-        return Err(format!("to: expected the name of what is written, such as {example:?}"));
+        return Err(format!("to: found {}, expected the name of what is written, such as {example:?}", described(to)));
     };
     if let Err(expected) = safe_name(name) {
         return Err(format!("to: found {name:?}, expected {expected}: it is written into the shot's folder"));
@@ -127,7 +130,10 @@ fn add_option(words: &mut Vec<String>, name: &str, value: &Value) -> Result<(), 
         Value::Number(number) => number.to_string(),
         Value::String(text) => text.clone(),
         Value::Array(list) => return list.iter().try_for_each(|value| add_option(words, name, value)),
-        _ => return Err(format!("{name}: expected a text, a number, true or false, or a list of them")),
+        _ => {
+            let found = described(Some(value));
+            return Err(format!("{name}: found {found}, expected a text, a number, true or false, or a list of them"));
+        }
     };
     // One word: a value may begin with a dash.
     words.push(format!("{word}={text}"));
@@ -193,15 +199,15 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (value, begin) in [
-            (json!(3), "expected an object"),
+            (json!(3), "found 3, expected an object"),
             (json!({}), "do: found \"\""),
-            (json!({"do": "render"}), "to: expected the name"),
+            (json!({"do": "render"}), "to: found nothing, expected the name"),
             (json!({"do": "check", "to": "a"}), "to: found a name, expected none"),
             (json!({"do": "export", "to": "../a.svg"}), "to: found \"../a.svg\""),
             (json!({"do": "track", "to": "Batch.json"}), "to: found \"Batch.json\", expected another"),
             (json!({"do": "track", "output": "x"}), "output: not an option"),
             (json!({"do": "track", "threads": 9}), "threads: not an option"),
-            (json!({"do": "track", "preset": {}}), "preset: expected a text"),
+            (json!({"do": "track", "preset": {}}), "preset: found an object, expected a text"),
         ] {
             assert!(words(&value).starts_with(&format!("error: {begin}")), "{}", words(&value));
         }

@@ -1,7 +1,7 @@
 //! The artist's edits of the scene. An edit that is refused changes nothing.
 
 use rototoon::geometry::Point;
-use rototoon::scene::{FrameNumber, Part, Scene};
+use rototoon::scene::{FrameNumber, NoSuchPart, Part, Scene};
 
 /// Largest absolute coordinate, in pixels. A larger one is a mistake of the caller.
 const MAX_COORDINATE: f64 = 1e6;
@@ -10,13 +10,8 @@ const MAX_COORDINATE: f64 = 1e6;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditError {
     /// The document has no part of that name.
-    #[error("no part {name:?}; the document has {known}")]
-    NoSuchPart {
-        /// The requested name.
-        name: String,
-        /// The names of the document's parts, as a list for people.
-        known: String,
-    },
+    #[error(transparent)]
+    NoSuchPart(#[from] NoSuchPart),
     /// The part has no key on that frame.
     #[error("part {part:?}: no key on frame {frame}")]
     NoSuchKey {
@@ -107,17 +102,8 @@ pub enum EditError {
     },
 }
 
-/// The index of the part that has this name.
-pub fn part_index(scene: &Scene, name: &str) -> Result<usize, EditError> {
-    scene.parts.iter().position(|part| part.name == name).ok_or_else(|| {
-        let names: Vec<String> = scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
-        let known = if names.is_empty() { "no parts".into() } else { names.join(", ") };
-        EditError::NoSuchPart { name: name.into(), known }
-    })
-}
-
 fn part_mut<'a>(scene: &'a mut Scene, name: &str) -> Result<&'a mut Part, EditError> {
-    let index = part_index(scene, name)?;
+    let index = scene.part_index(name)?;
     Ok(&mut scene.parts[index])
 }
 
@@ -207,7 +193,7 @@ fn forget_results(part: &mut Part, forget: impl Fn(FrameNumber) -> bool) {
 /// single key, any other frame of the footage.
 fn check_correctable(scene: &Scene, name: &str, frame: FrameNumber) -> Result<(), EditError> {
     let (first, last) = (scene.footage.first, scene.footage.last);
-    let part = &scene.parts[part_index(scene, name)?];
+    let part = &scene.parts[scene.part_index(name)?];
     let single = part.keys.len() == 1 && !part.keys.contains_key(&frame);
     if single && !(first..=last).contains(&frame) {
         return Err(EditError::OutsideFootage { part: name.into(), frame, first, last });

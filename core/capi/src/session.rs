@@ -1,6 +1,5 @@
 //! The session behind a session handle: a document, its pictures, and the results that tracking keeps for reuse.
 
-use crate::edit::part_index;
 use crate::options::Options;
 use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
@@ -139,7 +138,7 @@ impl Session {
 
     /// Removes a part with its keys, corrections and results.
     pub fn remove_part(&mut self, name: &str) -> Result<(), Failure> {
-        let index = part_index(&self.document.scene, name).map_err(Failure::error)?;
+        let index = self.document.scene.part_index(name).map_err(Failure::error)?;
         self.document.scene.parts.remove(index);
         Ok(())
     }
@@ -152,7 +151,7 @@ impl Session {
 
     /// A part by name.
     pub fn part(&self, name: &str) -> Result<&Part, Failure> {
-        let index = part_index(&self.document.scene, name).map_err(Failure::error)?;
+        let index = self.document.scene.part_index(name).map_err(Failure::error)?;
         Ok(&self.document.scene.parts[index])
     }
 

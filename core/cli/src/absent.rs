@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::{arguments, project, render};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::project::output::check_writable;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{FrameError, FrameNumber};
 use std::ops::RangeInclusive;
 
 /// The subcommand.
@@ -41,19 +41,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     check_writable(to)?;
     let name = arguments::choice(given, "part");
     let footage = document.scene.footage.clone();
-    let Some(part) = document.scene.parts.iter_mut().find(|part| part.name == name) else {
-        let known: Vec<String> = document.scene.parts.iter().map(|part| format!("{:?}", part.name)).collect();
-        let known = if known.is_empty() { "no parts".into() } else { known.join(", ") };
-        return Err(Failure::Other(format!("{}: no part {name:?}; the document has {known}", from.display())));
-    };
+    let index = document.scene.part_index(name);
+    let index = index.map_err(|error| Failure::Other(format!("{}: {error}", from.display())))?;
     let Some(frames) = given.get_one::<RangeInclusive<FrameNumber>>("frames") else { return Ok(()) };
     let (first, last) = (*frames.start(), *frames.end());
     if let Some(frame) = [first, last].into_iter().find(|frame| !(footage.first..=footage.last).contains(frame)) {
-        let (first, last) = (footage.first, footage.last);
-        return Err(Failure::Other(format!(
-            "frame {frame} is outside the footage, which has frames {first} to {last}"
-        )));
+        let outside = FrameError::Outside { frame, first: footage.first, last: footage.last };
+        return Err(Failure::Other(format!("{}: {outside}", from.display())));
     }
+    let part = &mut document.scene.parts[index];
     if given.get_flag("there") {
         part.clear_absent(first, last);
     } else {

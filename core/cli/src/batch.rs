@@ -30,7 +30,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(arguments::output("DIR", "The folder of the results; each shot gets a folder in it"))
-        .arg(number("jobs", "N", "Shots at a time; 0 for one a core").default_value("0"))
+        .arg(number("jobs", "N", "Shots at a time; 0 for one per core").default_value("0"))
         .arg(number("threads", "N", "Threads of each shot; 0 to share the cores among the shots").default_value("0"))
         .arg(
             Arg::new("memory")

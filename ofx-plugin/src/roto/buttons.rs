@@ -2,7 +2,7 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
-use super::instance::ORIGIN;
+use super::instance::{NO_SHAPES, ORIGIN};
 use super::track::BUSY;
 use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
@@ -184,7 +184,7 @@ fn save(effect: &Effect) -> Result<(), Failure> {
     }
     let text = effect.parameters()?.text(c"document")?;
     if text.trim().is_empty() {
-        return Err(Failure::Told("found no shapes to save: load a project first".into()));
+        return Err(Failure::Told(NO_SHAPES.into()));
     }
     let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
     let json = stored::decode(&text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;

@@ -1,6 +1,7 @@
 //! Selects a part from the list of the parts: by its menu, or with buttons that go from one part to the next.
 
 use super::edit::Selection;
+use super::instance::NO_SHAPES;
 use super::listing::{MENU, names, refresh};
 use super::{edits, instance};
 use crate::ofx::{Effect, Failure, Parameters};
@@ -33,7 +34,7 @@ pub fn step(effect: &Effect, forward: bool) -> Result<(), Failure> {
         (None, true) => names.first(),
         (None, false) => names.last(),
     };
-    let next = next.ok_or_else(|| Failure::Told("found no parts: draw one, or load a project first".into()))?;
+    let next = next.ok_or_else(|| Failure::Told(NO_SHAPES.into()))?;
     select(effect, &parameters, next)
 }
 

@@ -8,7 +8,7 @@ use super::{follow, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{FrameNumber, NoSuchPart};
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -175,7 +175,7 @@ impl Bench {
         let name = name.trim();
         let chosen = document.scene.parts.iter().position(|part| part.name == name);
         if !name.is_empty() && chosen.is_none() {
-            return Err(Failure::Told(format!("Part: found {name:?}, but no part has this name")));
+            return Err(Failure::Told(format!("Part: {}", NoSuchPart::of(&document.scene.parts, name))));
         }
         if let Some(part) = chosen.filter(|part| !parts.contains(part)) {
             let name = &document.scene.parts[part].name;
@@ -269,20 +269,22 @@ fn refused(text: &str) -> Outcome {
 /// The buttons that change whole parts.
 fn on_parts(bench: &Bench, name: &str) -> Outcome {
     let mut document = Document::clone(&bench.document);
+    let frame = bench.frame;
+    let part = bench.chosen.map_or_else(String::new, |part| format!("{:?}", document.scene.parts[part].name));
     let (label, nothing, done) = match name {
         "newKey" => (
             "New key",
-            "every part has a key here already, or none anywhere",
+            format!("frame {frame}: every part has a key here already, or none anywhere"),
             change::new_key(&mut document, bench.frame, &bench.chosen_or_all()),
         ),
         "deleteKey" => (
             "Delete key",
-            "the part has no key on this frame",
+            format!("{part} has no key on frame {frame}"),
             bench.chosen().and_then(|part| change::delete_key(&mut document, bench.frame, &[part])),
         ),
         "hideHere" | "hideStretch" => (
             "Hide part",
-            "",
+            String::new(),
             bench
                 .chosen()
                 .and_then(|part| absence::toggle(&mut document, part, bench.frame, name == "hideStretch"))
@@ -290,21 +292,22 @@ fn on_parts(bench: &Bench, name: &str) -> Outcome {
         ),
         "moveToPlace" => (
             "Order of parts",
-            "the part is at this place already",
+            format!("{part} is at this place already"),
             bench.chosen().and_then(|part| order::move_to(&mut document, part, bench.place)),
         ),
         "nearer" | "farther" => (
             "Order of parts",
-            "",
+            String::new(),
             bench.chosen().and_then(|part| order::shift(&mut document, part, name == "nearer")).map(|()| true),
         ),
         _ => {
-            ("Delete part", "", bench.chosen().and_then(|part| change::delete_part(&mut document, part)).map(|()| true))
+            let done = bench.chosen().and_then(|part| change::delete_part(&mut document, part));
+            ("Delete part", String::new(), done.map(|()| true))
         }
     };
     match done {
         Ok(true) => Outcome::Edited(Edit { label, document }),
-        Ok(false) => refused(nothing),
+        Ok(false) => refused(&nothing),
         Err(refused) => Outcome::Refused(refused),
     }
 }

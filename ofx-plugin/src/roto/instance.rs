@@ -16,6 +16,8 @@ use std::time::SystemTime;
 
 /// The name of the stored document in messages.
 pub const ORIGIN: &str = "the composition's document";
+/// What a button says that needs shapes where there are none.
+pub const NO_SHAPES: &str = "found no shapes: draw some, or load a project first";
 /// Most different messages until the user changes something.
 const MOST_NOTES: usize = 20;
 

@@ -17,6 +17,7 @@ use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectPropRegionOfInterest, kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow,
     kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied, kOfxImageUnPreMultiplied,
 };
+use rototoon::scene::NoSuchPart;
 
 /// The picture to draw at the time of an action.
 pub struct Drawn {
@@ -49,7 +50,8 @@ pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Optio
     }
     let (parts, missing) = selected(&document.scene.parts, &settings.parts);
     for name in missing {
-        instance.note(effect, &format!("parts: found {name:?}, but no part has this name"), false);
+        let missing = NoSuchPart::of(&document.scene.parts, name);
+        instance.note(effect, &format!("Parts: {missing}"), false);
     }
     if !document.scene.parts.iter().any(|part| !part.tracks.is_empty()) {
         instance.note(effect, "the project is not tracked, so its parts are drawn on their key frames only", false);

@@ -1,5 +1,6 @@
 //! Takes motions and shapes out: keys of parameters to which other nodes can be linked, and files for other programs.
 
+use super::instance::NO_SHAPES;
 use super::motion::Motion;
 use super::placement::Placement;
 use super::settings::{self, Settings};
@@ -31,7 +32,7 @@ const SPACING: f64 = 2.0;
 
 fn document(effect: &Effect) -> Result<Arc<Document>, Failure> {
     let document = instance(effect)?.document(&effect.parameters()?)?;
-    document.ok_or_else(|| Failure::Told("found no shapes: draw some, or load a project first".into()))
+    document.ok_or_else(|| Failure::Told(NO_SHAPES.into()))
 }
 
 /// Sets keys for the motion of the selected part on all of its frames.

@@ -1,6 +1,7 @@
 //! The button *Track*.
 
 use super::film::{Film, Kept};
+use super::instance::NO_SHAPES;
 use super::job::{Job, run};
 use super::{edits, instance};
 use crate::description::SOURCE;
@@ -17,7 +18,7 @@ pub const BUSY: &str = "the node is tracking: wait until it is done, or cancel i
 pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
-    let document = document.ok_or_else(|| Failure::Told("found no shapes to track: load a project first".into()))?;
+    let document = document.ok_or_else(|| Failure::Told(NO_SHAPES.into()))?;
     let job = Job::of(effect, &document, time)?;
     let busy = instance.begin_tracking().ok_or_else(|| Failure::Told(BUSY.into()))?;
     let drops = instance.drop_frames();

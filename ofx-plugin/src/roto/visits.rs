@@ -1,6 +1,7 @@
 //! Goes to the frames that need the user: where a part begins to be lost, and where the next key helps most.
 
 use super::instance;
+use super::instance::NO_SHAPES;
 use super::parts::selected;
 use super::standing::{Standing, stretches};
 use crate::ofx::{Effect, Failure};
@@ -12,8 +13,7 @@ use std::collections::BTreeSet;
 pub fn go(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
-    let document =
-        document.ok_or_else(|| Failure::Told("found no shapes: draw some, or load a project first".into()))?;
+    let document = document.ok_or_else(|| Failure::Told(NO_SHAPES.into()))?;
     let offset = parameters.int(c"frameOffset", time)?;
     let shown = selected(&document.scene.parts, &parameters.text(c"parts")?).0;
     let parts: Vec<Part> = shown.into_iter().map(|part| document.scene.parts[part].clone()).collect();

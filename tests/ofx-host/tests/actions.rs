@@ -166,7 +166,7 @@ fn warnings_are_shown_once_and_the_picture_is_drawn() {
     };
     let larger = ClipSettings { x2: 100, y2: 80, ..ClipSettings::default() };
     for (source, document, parts, said) in [
-        (ClipSettings::default(), document(), "star, leg, arm*", "\"leg\", but no part has this name"),
+        (ClipSettings::default(), document(), "star, leg, arm*", "no part \"leg\"; the document has \"star\""),
         (ClipSettings::default(), untracked, "", "not tracked"),
         (larger, document(), "", "64x48"),
     ] {

@@ -130,7 +130,7 @@ fn buttons_go_from_part_to_part_in_any_host() {
         assert_eq!(effect.text("partNames"), "star, ground line");
         effect.set_text_silently("document", "");
         assert_eq!(effect.press("nextPart"), "kOfxStatFailed");
-        assert!(host.messages().join("").contains("found no parts"));
+        assert!(host.messages().join("").contains("found no shapes"));
         let _ = host.errors();
     }
     leave(host);

@@ -269,7 +269,7 @@ fn buttons_make_and_delete_keys_points_and_parts() {
     assert_eq!(effect.press_at("deleteKey", 2.0), OK);
     assert_eq!(kept(&effect).scene.parts.iter().map(|part| part.keys.len()).collect::<Vec<_>>(), [2, 3, 3]);
     assert_eq!(effect.press_at("deleteKey", 2.0), "kOfxStatFailed");
-    assert!(host.messages().iter().any(|text| text.contains("no key on this frame")));
+    assert!(host.messages().iter().any(|text| text.contains("\"star\" has no key on frame 2")));
     // Points are selected with a box.
     drag(&mut effect, 2.0, Point::new(61.0, 30.0), Point::new(45.0, 10.0));
     assert_eq!(effect.press_at("insertPoints", 2.0), "kOfxStatFailed");

@@ -38,7 +38,7 @@ pub use clip::Clip;
 pub use falloff::{Falloff, FalloffCurve};
 pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
 pub use outcome::{Outcome, Verdict};
-pub use part::{Part, Span};
+pub use part::{NoSuchPart, Part, Span};
 pub use pattern::{FramePattern, PatternError};
 pub use progress::{Cancelled, Progress, Silent};
 pub use raster::{Colour, Raster};
@@ -51,4 +51,11 @@ pub struct Scene {
     pub footage: Footage,
     /// The parts, in the document's order.
     pub parts: Vec<Part>,
+}
+
+impl Scene {
+    /// The index of the part that has this name.
+    pub fn part_index(&self, name: &str) -> Result<usize, NoSuchPart> {
+        self.parts.iter().position(|part| part.name == name).ok_or_else(|| NoSuchPart::of(&self.parts, name))
+    }
 }

@@ -45,6 +45,25 @@ pub struct Part {
     pub colour: Option<[f64; 3]>,
 }
 
+/// A name that no part has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no part {name:?}; the document has {known}")]
+pub struct NoSuchPart {
+    /// The requested name.
+    pub name: String,
+    /// The names of the parts, as a list for people.
+    pub known: String,
+}
+
+impl NoSuchPart {
+    /// The error for these parts.
+    pub fn of(parts: &[Part], name: &str) -> Self {
+        let names: Vec<String> = parts.iter().map(|part| format!("{:?}", part.name)).collect();
+        let known = if names.is_empty() { "no parts".into() } else { names.join(", ") };
+        Self { name: name.into(), known }
+    }
+}
+
 /// The frames between two neighbouring keys of a part, keys included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {

@@ -80,7 +80,7 @@ mod tests {
     fn keys_and_what_is_not_lost_are_refused() {
         let mut document = document();
         for (frame, whole, word) in
-            [(0, false, "key"), (8, true, "neither lost nor hidden"), (40, false, "no frame 40")]
+            [(0, false, "key"), (8, true, "neither lost nor hidden"), (40, false, "frame 40 is outside")]
         {
             let refused = toggle(&mut document, 0, frame, whole).unwrap_err();
             assert!(refused.0.contains(word), "{}", refused.0);

@@ -9,7 +9,7 @@ use rototoon::geometry::Point;
 use rototoon::project::{Document, validate};
 use rototoon::render::motion::outline_at;
 use rototoon::scene::limbs::{Follow, Limb};
-use rototoon::scene::{FrameNumber, Part};
+use rototoon::scene::{FrameError, FrameNumber, Part};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Differences of at most this many pixels are no movement. It is half of what documents round to.
@@ -35,7 +35,7 @@ pub fn move_points(
         let before = part.points_at(frame).cloned();
         let Some(before) = before else {
             let name = &part.name;
-            return Err(Refused::new(format!("{name:?} has no shape on frame {frame}: press New Key Here first")));
+            return Err(Refused::new(format!("{name:?} has no shape on frame {frame}: press New key here first")));
         };
         let mut after = before.clone();
         for (place, to) in moved.iter().filter(|(place, _)| place.part == index) {
@@ -129,7 +129,7 @@ pub fn delete_key(document: &mut Document, frame: FrameNumber, parts: &[usize]) 
         let Some(part) = document.scene.parts.get_mut(index) else { continue };
         if part.keys.len() == 1 && part.keys.contains_key(&frame) {
             let name = &part.name;
-            return Err(Refused::new(format!("frame {frame} has the only key of {name:?}: use Delete Part instead")));
+            return Err(Refused::new(format!("frame {frame} has the only key of {name:?}: use Delete part instead")));
         }
         any |= part.keys.remove(&frame).is_some();
     }
@@ -185,6 +185,6 @@ pub fn inside_footage(document: &Document, frame: FrameNumber) -> Result<(), Ref
     if (footage.first..=footage.last).contains(&frame) {
         return Ok(());
     }
-    let (first, last) = (footage.first, footage.last);
-    Err(Refused::new(format!("the project's footage has no frame {frame}, only {first} to {last}: see Frame Offset")))
+    let outside = FrameError::Outside { frame, first: footage.first, last: footage.last };
+    Err(Refused::new(format!("{outside}: see Frame offset")))
 }

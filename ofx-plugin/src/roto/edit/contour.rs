@@ -39,7 +39,7 @@ pub fn draw(
         let part = &mut parts[index];
         if part.closed != closed {
             let (is, drawn) = if closed { ("open", "closed") } else { ("closed", "open") };
-            let text = format!("{name:?} is {is}, but the contour is {drawn}: set Closed, or press New Part first");
+            let text = format!("{name:?} is {is}, but the contour is {drawn}: set Closed, or press New part first");
             return Err(Refused::new(text));
         }
         let shape = key_of(part, frame, points, set);

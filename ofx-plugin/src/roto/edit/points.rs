@@ -73,7 +73,7 @@ pub fn delete(document: &mut Document, index: usize, gone: &BTreeSet<usize>) -> 
     if left < least {
         let name = &part.name;
         return Err(Refused::new(format!(
-            "{name:?} would keep {left} points, expected at least {least}: use Delete Part instead"
+            "{name:?} would keep {left} points, expected at least {least}: use Delete part instead"
         )));
     }
     each_shape(part, |points| retain(points, &gone));

@@ -141,7 +141,7 @@ fn wrong_contours_are_refused_and_unfinished_ones_dropped() {
     for at in [p(10.0, 10.0), p(60.0, 60.0), p(90.0, 10.0)] {
         editor.down(&work, at);
     }
-    assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(text) if text.0.contains("no frame 400")));
+    assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(text) if text.0.contains("frame 400 is outside")));
     (work.frame, work.name, work.closed) = (FRAME, "square", false);
     editor.down(&work, p(10.0, 10.0));
     editor.down(&work, p(60.0, 60.0));
