@@ -121,12 +121,12 @@ def points(frame):
 
 @pytest.fixture(scope="module")
 def document(tmp_path_factory) -> Path:
-    """Two parts: the near one is there on the first and the last frame, the far one on frames 2 to 6."""
-    keys = {str(frame): points(frame) for frame in range(2, 7)}
+    """Two parts: the near one is there on the first and the last frame, the far one on frames 2 to 6, but hidden on frame 4."""
+    keys = {str(frame): points(frame) for frame in (2, 3, 5, 6)}
     still = {"0": [[1.0, 40.0], [30.5, 44.0]], "8": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
         {"name": 'near "line"', "closed": False, "depth": 2, "keys": still},
-        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff": 3.5, "color": [0.25, 1, 0.5]},
+        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff": 3.5, "color": [0.25, 1, 0.5], "absent": [[4, 4]]},
     ]
     footage = {"pattern": "f_%d.png", "first": 0, "last": 8, "fps": 12.5, "width": 64, "height": HEIGHT}
     document = tmp_path_factory.mktemp("natron") / "a.json"
@@ -154,8 +154,8 @@ def test_the_script_makes_the_parts(document: Path, name: str):
     assert (far.falloff.value, near.falloff.value) == (3.5, 1)
     assert far.colour == (0.25, 1, 0.5) and len(near.colour) == 3 and near.colour != far.colour
     for k, keyed in enumerate(far.points):
-        assert keyed == {f: (points(f)[k][0], HEIGHT - points(f)[k][1]) for f in range(2, 7)}
-    assert far.activated.keys == {0: False, 2: True, 7: False}
+        assert keyed == {f: (points(f)[k][0], HEIGHT - points(f)[k][1]) for f in (2, 3, 5, 6)}
+    assert far.activated.keys == {0: False, 2: True, 4: False, 5: True, 7: False}
     assert [Choice.OPTIONS[curve.life.value] for curve in app.items] == ["Custom", "All"]
     assert near.activated.keys == {} and set(near.points[0]) == {0, 8}
 
@@ -195,12 +195,12 @@ def test_boost_reads_the_project(document: Path, reader: Path):
         "parameter feather  0.000000",
         "parameter featherFallOff  3.500000",
         "parameter lifeTime Custom 4",
-        "parameter activated  0 @0=0/0 @2=1/0 @7=0/0",
+        "parameter activated  0 @0=0/0 @2=1/0 @4=0/0 @5=1/0 @7=0/0",
     ]
     assert lines[near + 1] == "parameter feather  0.000000" and lines[near + 2].startswith("point")
     for at, kind in ((11, "point"), (14, "feather")):
         for k in range(3):
-            x, y = ([f"{f}={value}" for f in range(2, 7) for value in [number(f, k)]] for number in (across, up))
+            x, y = ([f"{f}={value}" for f in (2, 3, 5, 6) for value in [number(f, k)]] for number in (across, up))
             keys = " ".join(x), " ".join(y)
             assert lines[at + k] == kind + "".join(f" | {keys[axis]}" for axis in (0, 1) * 3)
 

@@ -8,6 +8,7 @@
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - [`outlines`]: contours with the same number of points on every frame
+//! - `presence`: when a part is there
 //! - [`xml`]: escaping of text for XML
 
 pub mod after_effects;
@@ -16,6 +17,7 @@ pub mod natron;
 pub mod natron_project;
 pub mod nuke;
 pub mod outlines;
+mod presence;
 pub mod silhouette;
 pub mod svg;
 pub mod xml;

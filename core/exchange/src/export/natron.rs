@@ -6,17 +6,17 @@
 //! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
 //! the point, so the sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is
 //! none. Of the falloff of a soft border it has the rate: Natron too raises its ramp to it. Scripts cannot choose the ramp.
-//! Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active. For
+//! Coordinates are pixels with x right and y up. Where a part is not there its curve is not active. For
 //! that its life time is *Custom*, the last of the choices: others ignore the parameter that says whether it is active.
 //!
 //! Source: Natron 2, Python reference (`Roto`, `BezierCurve`), and the public sources of its export of groups, of `PyRoto.cpp`
 //! and of `RotoDrawableItem.cpp`.
 //!
-//! Limits: a part that vanishes between its frames is interpolated there. Natron offers scripts no open curves; an
-//! open part becomes a curve that is not closed yet, and has no matte.
+//! Limits: Natron offers scripts no open curves; an open part becomes a curve that is not closed yet, and has no matte.
 
 use super::coordinate;
 use super::outlines::Outlines;
+use super::presence::presence;
 use rototoon_base::scene::Scene;
 use std::fmt::Write;
 
@@ -27,18 +27,14 @@ const HEAD: &str = "# -*- coding: utf-8 -*-
 # It makes one Roto node.
 
 # Label, whether the shape is closed, its colour in the viewer, the falloff of its feather, and for each frame x and y of each
-# point, in pixels with y up.
+# point, in pixels with y up. Then the frames on which the shape comes (1) or goes (0).
 SHAPES = [
 ";
 
-const TAIL: &str = "]
+const CODE: &str = "]
 
-# The first and the last frame of the footage.
-FIRST, LAST = ";
 
-const CODE: &str = "
-
-def rototoon_shape(roto, layer, label, closed, colour, falloff, frames):
+def rototoon_shape(roto, layer, label, closed, colour, falloff, frames, changes):
     bezier = roto.createBezier(0, 0, frames[0][0])
     bezier.setLabel(label)
     layer.addItem(bezier)
@@ -55,18 +51,13 @@ def rototoon_shape(roto, layer, label, closed, colour, falloff, frames):
     bezier.getFeatherDistanceParam().setValue(0, 0)
     bezier.getFeatherFallOffParam().setValue(falloff, 0)
     bezier.setOverlayColor(*colour)
-    begin, end = frames[0][0], frames[-1][0]
     # Keys of Activated count in the last life time only, Custom. Newer versions of Natron begin with All.
     life = bezier.getParam(\"lifeTime\")
-    if (begin > FIRST or end < LAST) and hasattr(life, \"getNumOptions\"):
+    if len(changes) > 1 and hasattr(life, \"getNumOptions\"):
         life.set(life.getNumOptions() - 1)
-    active = bezier.getActivatedParam()
-    if begin > FIRST:
-        active.setValueAtTime(False, FIRST)
-    if begin > FIRST or end < LAST:
-        active.setValueAtTime(True, begin)
-    if end < LAST:
-        active.setValueAtTime(False, end + 1)
+    if len(changes) > 1:
+        for frame, there in changes:
+            bezier.getActivatedParam().setValueAtTime(there == 1, frame)
 
 
 def rototoon_shapes(app):
@@ -74,8 +65,8 @@ def rototoon_shapes(app):
     node.setLabel(\"Rototoon\")
     roto = node.getRotoContext()
     layer = roto.getBaseLayer()
-    for label, closed, colour, falloff, frames in SHAPES:
-        rototoon_shape(roto, layer, label, closed, colour, falloff, frames)
+    for shape in SHAPES:
+        rototoon_shape(roto, layer, *shape)
 
 
 try:
@@ -102,7 +93,7 @@ pub fn natron(scene: &Scene, spacing: f64) -> String {
         let [r, g, b] = part.shown_colour(index).map(|value| coordinate(value.into()));
         let rate = coordinate(part.falloff.rate.min(MOST_FALLOFF));
         let _ = writeln!(out, "    ({}, {closed}, ({r}, {g}, {b}), {rate}, [", literal(&part.name));
-        for (frame, points) in keys {
+        for (frame, points) in &keys {
             let _ = write!(out, "        ({frame}, [");
             for (k, p) in points.iter().enumerate() {
                 let comma = if k > 0 { ", " } else { "" };
@@ -110,10 +101,12 @@ pub fn natron(scene: &Scene, spacing: f64) -> String {
             }
             out += "]),\n";
         }
-        out += "    ]),\n";
+        let changes = presence(part, &keys, &scene.footage).into_iter();
+        let changes: Vec<_> = changes.map(|(frame, there)| format!("({frame}, {})", u8::from(there))).collect();
+        // A list of one thing needs no comma in Python.
+        let _ = writeln!(out, "    ], [{}]),", changes.join(", "));
     }
-    let _ = write!(out, "{TAIL}{first}, {last}\n{CODE}");
-    out
+    out + CODE
 }
 
 /// A text for Python 2 and 3, in ASCII.
@@ -160,11 +153,10 @@ mod tests {
     (u\"far\", True, (0.0425, 0.1328, 0.85), 2.5, [
         (1, [0.5, 28, 8, 28, 8.125, 0]),
         (3, [0.3333, 28, 8, 28, 8.125, 0]),
-    ]),
+    ], [(0, 0), (1, 1), (4, 0)]),
     (u\"near\", False, (1, 0.303, 0.15), 1, [
 ";
         assert!(text.contains(wanted), "{text}");
-        assert!(text.contains("FIRST, LAST = 0, 5\n"));
         assert!(!text.contains("def createInstance") && text.is_ascii());
     }
 

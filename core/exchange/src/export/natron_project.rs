@@ -9,7 +9,7 @@
 //! every frame on which the part has a contour, and goes evenly between keys. Handles and the feather's points are at the
 //! points, so sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is none. Of the falloff
 //! of a soft border it has the rate.
-//! Coordinates are pixels with x right and y up. Before its first and after its last contour a curve is not active: a
+//! Coordinates are pixels with x right and y up. Where a part is not there its curve is not active: a
 //! parameter with keys says so, and the curve's life time is *Custom*, since other life times ignore that parameter.
 //!
 //! Source: the public sources of Natron 2, folder `Engine`: order and versions of `ProjectSerialization.h` (6),
@@ -19,14 +19,14 @@
 //! (3); how they are read in `Project.cpp`, `ProjectPrivate.cpp` and `RotoDrawableItem.cpp`; derivatives of keys in
 //! `Interpolation.cpp`. Compared with projects of 2.3.11 and 2.3.12 in Natron's public tests.
 //!
-//! Limits: an open part is a curve that is not closed yet, and has no matte: Natron would paint an open curve with a brush. A
-//! part that vanishes between its frames is interpolated there. Projects are long: six numbers with a key each for every point,
-//! and as many for its feather.
+//! Limits: an open part is a curve that is not closed yet, and has no matte: Natron would paint an open curve with a brush.
+//! Projects are long: six numbers with a key each for every point, and as many for its feather.
 
 use super::archive::{Archive, Class};
 use super::coordinate;
 use super::natron::MOST_FALLOFF;
 use super::outlines::Outlines;
+use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 
@@ -186,7 +186,7 @@ fn drawable(
     [red, green, blue]: [f64; 3],
 ) {
     item(out, name, &part.name, "Layer1");
-    let active = activity(keys[0].0, keys[keys.len() - 1].0, footage);
+    let active = activity(part, keys, footage);
     let rate = part.falloff.rate.min(MOST_FALLOFF);
     let count = if active.is_empty() { 1 } else { 3 };
     out.value("NbItems", if rate == 1.0 { count } else { count + 1 });
@@ -205,10 +205,12 @@ fn drawable(
 }
 
 /// Keys of the parameter that says whether a curve is active; none if it always is.
-fn activity(begin: FrameNumber, end: FrameNumber, footage: &Footage) -> Vec<Key> {
-    let (late, early) = (begin > footage.first, end < footage.last);
-    let keys = [(late, footage.first, 0.0), (late || early, begin, 1.0), (early, end.saturating_add(1), 0.0)];
-    keys.into_iter().filter_map(|(wanted, frame, value)| wanted.then_some((frame, value))).collect()
+fn activity(part: &Part, keys: &[(FrameNumber, Vec<Point>)], footage: &Footage) -> Vec<Key> {
+    let changes = presence(part, keys, footage);
+    if changes.len() < 2 {
+        return Vec::new();
+    }
+    changes.into_iter().map(|(frame, there)| (frame, f64::from(u8::from(there)))).collect()
 }
 
 /// A value of a parameter.
@@ -360,10 +362,13 @@ mod tests {
     #[test]
     fn a_part_is_active_while_it_has_contours() {
         let footage = scene().footage;
-        assert_eq!(activity(1, 9, &footage), []);
-        assert_eq!(activity(3, 9, &footage), [(1, 0.0), (3, 1.0)]);
-        assert_eq!(activity(1, 4, &footage), [(1, 1.0), (5, 0.0)]);
-        assert_eq!(activity(3, 4, &footage), [(1, 0.0), (3, 1.0), (5, 0.0)]);
+        let part = Part { absent: vec![[5, 6]], ..Part::default() };
+        let of = |begin, end| activity(&part, &[begin, end].map(|frame| (frame, vec![Point::ONE])), &footage);
+        assert_eq!(of(1, 4), [(1, 1.0), (5, 0.0)]);
+        assert_eq!(of(3, 4), [(1, 0.0), (3, 1.0), (5, 0.0)]);
+        assert_eq!(of(7, 9), [(1, 0.0), (7, 1.0)]);
+        assert_eq!(of(1, 9), [(1, 1.0), (5, 0.0), (7, 1.0)]);
+        assert_eq!(activity(&Part::default(), &[(1, vec![Point::ONE]), (9, vec![Point::ONE])], &footage), []);
         let text = natron_project(&scene(), 1.0);
         assert_eq!(text.matches("<ChoiceLabel>Custom</ChoiceLabel>").count(), 1);
     }

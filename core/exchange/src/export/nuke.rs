@@ -4,17 +4,17 @@
 //! three pairs of numbers: the handle before it, its position, and the handle after it. Handles are relative to their
 //! point. They are zero, so the sides are straight like those of the part. If a part has several frames, each number
 //! that changes is a curve of keys `{{frame value} …}`. Coordinates are pixels with x right, y up and the origin at the
-//! lower left. The lifetime of a shape is the range of its frames. Of the falloff of a soft border it has the rate (`ff`). The numbers of its
-//! curves (`ft`) are not public.
+//! lower left. The lifetime of a shape is the range of its frames. Where a part is not there between its frames, the opacity
+//! of its shape (`opc`) is 0. Of the falloff of a soft border it has the rate (`ff`). The numbers of its curves (`ft`) are not
+//! public.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format" (version 1.2 of the curves, since Nuke 7). As in
 //! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
-//!
-//! Limits: a part that vanishes between its frames is interpolated there.
 
 use super::outlines::Outlines;
+use super::presence::presence;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{FrameNumber, Scene};
+use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 use std::fmt::Write;
 
 /// Flag: handles are relative to their point.
@@ -66,14 +66,27 @@ fn shape(out: &mut String, scene: &Scene, index: usize, spacing: f64) {
     let falloff = if rate == 1.0 { String::new() } else { format!(" ff {}", number(rate)) };
     let _ = write!(
         out,
-        "}}}}     idem}}\n     {{tx {} {} {}}}\n     {{a ro {r} go {g} bo {b} ao 1{falloff} ltn {} ltm {} ltt {}}}}}",
+        "}}}}     idem}}\n     {{tx {} {} {}}}\n     {{a ro {r} go {g} bo {b} ao 1{falloff}{} ltn {} ltm {} ltt {}}}}}",
         number((*first).into()),
         number(middle.x),
         number(height - middle.y),
+        opacity(part, &keys, &scene.footage),
         number((*first).into()),
         number((*last).into()),
         number(FRAME_RANGE),
     );
+}
+
+/// The opacity of a part that is not always there between its first and its last contour; empty otherwise. Nuke's own value is 1.
+/// A key on every frame makes steps, however Nuke interpolates.
+fn opacity(part: &Part, keys: &[(FrameNumber, Vec<Point>)], footage: &Footage) -> String {
+    let (begin, end) = (keys[0].0, keys[keys.len() - 1].0);
+    let changes = presence(part, keys, footage);
+    if !changes.iter().any(|(at, there)| *at < end && !there && *at > begin) {
+        return String::new();
+    }
+    let there = |frame| changes.partition_point(|(at, _)| *at <= frame).checked_sub(1).is_some_and(|k| changes[k].1);
+    format!(" opc {}", channel((begin..=end).map(|frame| (frame, f64::from(u8::from(there(frame)))))))
 }
 
 /// A number, or a curve of keys if the value changes between frames.
@@ -136,6 +149,25 @@ mod tests {
         assert!(text.contains(moving), "{text}");
         assert!(text.contains("{x41000000 x41a00000}"), "{text}");
         assert!(text.contains("ltn x3f800000 ltm x40400000 ltt x40800000"), "{text}");
+    }
+
+    #[test]
+    fn a_part_is_transparent_where_it_is_not_there() {
+        assert!(!nuke(&scene(), 1.0).contains("opc"));
+        let mut scene = scene();
+        scene.parts.truncate(1);
+        scene.parts[0].absent = vec![[2, 2]];
+        let text = nuke(&scene, 1.0);
+        let keys = "ao 1 opc {{x3f800000 x3f800000} {x40000000 0} {x40400000 x3f800000}} ltn x3f800000 ltm x40400000";
+        assert!(text.contains(keys), "{text}");
+        assert_eq!(text.matches('{').count(), text.matches('}').count());
+        // Keys alone are shapes between which Nuke moves; tracks have a contour wherever the part is.
+        scene.parts[0].absent.clear();
+        scene.parts[0].tracks = scene.parts[0].keys.clone();
+        assert!(nuke(&scene, 1.0).contains(keys));
+        let between = scene.parts[0].keys[&1].clone();
+        scene.parts[0].tracks.insert(2, between);
+        assert!(!nuke(&scene, 1.0).contains("opc"));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Shapes for Silhouette (`.fxs`).
 //!
 //! The file is an XML document. One layer contains a Bézier shape for each part, nearest first. A shape has a key of
-//! its path on every frame on which the part has a contour. Both handles of a point are at the point, so the sides are
+//! its path on every frame on which the part has a contour. Where the part is not there, the opacity of its shape is 0. Both handles of a point are at the point, so the sides are
 //! straight like those of the part.
 //!
 //! Coordinates are independent of the resolution: the origin is the middle of the picture, x points right, y down, and
@@ -12,9 +12,10 @@
 //! Silhouette reads that.
 
 use super::outlines::Outlines;
+use super::presence::presence;
 use super::xml::escaped;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Part, Scene};
+use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 use std::fmt::Write;
 
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
@@ -51,8 +52,8 @@ fn shape(out: &mut String, scene: &Scene, part: &Part, index: usize, spacing: f6
         "    <Object type=\"Shape\" label=\"{}\" shape_type=\"Bezier\" hidden=\"False\" locked=\"False\">\n     <Properties>",
         escaped(&part.name)
     );
+    *out += &opacity(&presence(part, &keys, &scene.footage), &scene.footage);
     for (id, value) in [
-        ("opacity", "100".to_owned()),
         ("motionBlur", "true".to_owned()),
         ("outlineColor", format!("({r:.3},{g:.3},{b:.3})")),
         ("mode", "Add".to_owned()),
@@ -75,8 +76,59 @@ fn shape(out: &mut String, scene: &Scene, part: &Part, index: usize, spacing: f6
     *out += "      </Property>\n     </Properties>\n    </Object>\n";
 }
 
+/// The opacity of a shape: a number, or keys that hold where the part comes and goes.
+fn opacity(changes: &[(FrameNumber, bool)], footage: &Footage) -> String {
+    if changes.len() < 2 {
+        return "      <Property constant=\"True\" id=\"opacity\"><Value>100</Value></Property>\n".to_owned();
+    }
+    let mut out = String::from("      <Property id=\"opacity\">\n");
+    for (frame, there) in changes {
+        let (frame, value) = (i64::from(*frame) - i64::from(footage.first), if *there { 100 } else { 0 });
+        let _ = writeln!(out, "       <Key frame=\"{frame}\" interp=\"hold\">{value}</Key>");
+    }
+    out + "      </Property>\n"
+}
+
 fn placed(p: Point, scene: &Scene) -> String {
     let (width, height) = (scene.footage.width as f64, scene.footage.height as f64);
     let (x, y) = ((p.x - 0.5 * width) / height, (p.y - 0.5 * height) / height);
     format!("({x:.DECIMALS$},{y:.DECIMALS$})")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn a_part_is_transparent_where_it_is_not_there() {
+        let at = |x: f64| vec![Point::new(x, 2.0), Point::new(8.0, 2.0), Point::new(8.0, 10.0)];
+        let part = Part {
+            name: "arm".into(),
+            closed: true,
+            keys: BTreeMap::from([(12, at(0.5)), (16, at(2.0))]),
+            absent: vec![[14, 14]],
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30 };
+        let mut scene = Scene { footage, parts: vec![part] };
+        let keys = |text: &str| -> Vec<(String, String)> {
+            let found = text
+                .split("<Property id=\"opacity\">")
+                .nth(1)
+                .map_or("", |rest| rest.split("</Property>").next().unwrap());
+            let key = |line: &str| {
+                let (frame, value) = line.trim().strip_prefix("<Key frame=\"")?.split_once("\" interp=\"hold\">")?;
+                Some((frame.to_owned(), value.strip_suffix("</Key>")?.to_owned()))
+            };
+            found.lines().filter_map(key).collect()
+        };
+        let expected = [("0", "0"), ("2", "100"), ("4", "0"), ("5", "100"), ("7", "0")];
+        assert_eq!(keys(&silhouette(&scene, 1.0)), expected.map(|(frame, value)| (frame.to_owned(), value.to_owned())));
+        scene.parts[0].absent.clear();
+        scene.footage.first = 12;
+        scene.footage.last = 16;
+        let text = silhouette(&scene, 1.0);
+        assert!(text.contains("<Property constant=\"True\" id=\"opacity\"><Value>100</Value></Property>"), "{text}");
+    }
 }
