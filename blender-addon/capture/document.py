@@ -19,6 +19,7 @@ from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common import jobs
+from ..common.wording import listed
 from . import absence, contours, corrections, ends, identity, snapping
 
 VERSION = 1
@@ -76,8 +77,31 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
     return Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern))
 
 
+def need_pictures(ob, reading: Reading) -> None:
+    """Raises a `Problem` if a key lies where the footage has no picture."""
+    settings = ob.rototoon
+    first, last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
+    beyond = {}
+    for part in reading.found.parts:
+        for frame, stroke in part.keys.items():
+            if not first <= frame <= last:
+                beyond.setdefault(reading.found.layer_names[stroke.layer], set()).add(frame)
+    if beyond:
+        where = ", ".join(f'on the layer "{name}" on {listed(sorted(frames))}' for name, frames in beyond.items())
+        raise Problem(f"The footage has no picture for the contours {where}: delete or move them; it has frames {first} to {last}")
+
+
+def _need_places(found: contours.Contours) -> None:
+    """Raises a `Problem` if a point of a line is no number."""
+    for (layer, frame), drawing in found.drawings.items():
+        if not np.isfinite(drawing.points).all():
+            where = f'A line on frame {frame} of the layer "{found.layer_names[layer]}"'
+            raise Problem(f"{where} has a point without a place (not a number): delete the line, and draw it again")
+
+
 def mapper_of(ob, found: contours.Contours, *more: int) -> Mapper:
     """The mappings of an object's contour layers, on the frames of all drawings, those between them, and `more`."""
+    _need_places(found)
     drawn: dict[int, list[np.ndarray]] = {}
     frames = {frame for _, frame in found.drawings} | set(more)
     for (layer, _), drawing in found.drawings.items():

@@ -1,7 +1,8 @@
 """Snapped lines, which follow the ink, as strokes on a layer of their own.
 
 A snapped stroke joins the paths of a part's segments. Each of its points carries the index of its segment, so the paths can be
-read back. Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed.
+read back. A stroke that was fitted or cut since has no longer all of its paths, and is not read: the control points stand for it.
+Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import strokes as st
 from ..blender.placement import Mapper
 from . import writing
 from .contours import Contours, Part, read_drawing
@@ -44,6 +46,11 @@ def split(points: np.ndarray, owner: np.ndarray, closed: bool) -> list[np.ndarra
     return paths
 
 
+def complete(segments: list, count: int, closed: bool) -> bool:
+    """Whether there is a path for each segment between `count` control points."""
+    return len(segments) == count - (0 if closed else 1) and all(len(path) for path in segments)
+
+
 def _arc(path: np.ndarray) -> np.ndarray:
     """The arc length up to each point of a path, as a share of the path's length."""
     steps = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
@@ -58,8 +65,9 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
     parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
     style = {part.number: writing.styles(part, found) for part in parts}
     frames = sorted({frame for _, frame in curves} - own)
+    ends = writing.ends_of(frames, own | set(frames), ob.rototoon.last + ob.rototoon.frame_offset)
     gp.remove_frames(layer, sorted(old - set(frames)))
-    gp.make_frames(layer, frames, gp.GENERATED)
+    gp.make_frames(layer, sorted({*frames, *ends}), gp.GENERATED)
     drawings = gp.drawings(layer)
     snapped = Mapper(ob, frames, _plane_points(ob, found), [layer.name])
     written = 0
@@ -117,7 +125,17 @@ def _rows(strokes: list[dict[str, np.ndarray]]) -> gp.Rows:
 
 
 def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
-    """Snapped paths in pixels, by part number and scene frame."""
+    """Snapped paths in pixels, by part number and scene frame, of the strokes that are as they were snapped or were moved."""
+    return {place: paths for place, paths in _read(ob).items() if paths is not None}
+
+
+def reshaped(ob) -> list[int]:
+    """The scene frames with snapped strokes that were fitted or cut since."""
+    return sorted({frame for (_, frame), paths in _read(ob).items() if paths is None})
+
+
+def _read(ob) -> dict[tuple[int, int], list[np.ndarray] | None]:
+    """As `read`, with `None` for strokes that have no longer all of their paths."""
     layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None or not gp.frame_numbers(layer):
         return {}
@@ -125,7 +143,8 @@ def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
         handles = gp.drawings(data.layers[layer.name])
         drawings = {f: read_drawing(handle, kind, 0, f) for f, (handle, kind) in handles.items()}
         owners = {f: gp.get(handles[f][0], gp.SEGMENT, len(drawing.points)) for f, drawing in drawings.items()}
-    closed = {part.number: part.closed for part in ob.rototoon.parts}
+        types = {f: gp.get(handles[f][0], "curve_type", len(drawing.strokes)) for f, drawing in drawings.items()}
+    parts = {part.number: part for part in ob.rototoon.parts}
     mapper = Mapper(ob, drawings, {}, [layer.name])
     found = {}
     for frame, drawing in drawings.items():
@@ -133,7 +152,18 @@ def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
         if owner is None:
             continue
         for stroke in drawing.strokes:
-            if stroke.part in closed and len(stroke.points):
+            part = parts.get(stroke.part)
+            if part is None or not len(stroke.points):
+                continue
+            # Guides of a curve do not lie on it.
+            straight = types[frame] is None or types[frame][stroke.index] == st.POLY
+            found[part.number, frame] = None
+            if straight and _ordered(owner[stroke.span], part.count - (0 if part.closed else 1)):
                 pixels = mapper.at(0, frame).to_pixels(stroke.points)
-                found[stroke.part, frame] = split(pixels, owner[stroke.span], closed[stroke.part])
+                found[part.number, frame] = split(pixels, owner[stroke.span], part.closed)
     return found
+
+
+def _ordered(owner: np.ndarray, segments: int) -> bool:
+    """Whether the points belong to all segments, one after the other."""
+    return bool((np.diff(owner) >= 0).all()) and np.array_equal(np.unique(owner), np.arange(segments))

@@ -55,6 +55,7 @@ def can_track(reading: document.Reading, preset: str) -> bool:
 def begin(ob, reading: document.Reading, preset: str) -> Run:
     """Makes a run. The caller starts its worker. Raises a `Problem` if no contour layer may be written."""
     guard.need_some(contour_layers(ob), hidden=True)
+    document.need_pictures(ob, reading)
     entry = sessions.get(ob, reading.document, reading.folder)
     entry.inputs = None
     threads = preferences.threads()
@@ -105,6 +106,7 @@ def writing_tracks(ob, reading: document.Reading, session) -> Iterator[float]:
         if index not in found.closed:
             laid = writing.laying_out(index, found.parts, tracks, found, reading.mapper, reading.corrections)
             blocks[name] = yield from laid
+            writing.limit(blocks[name], ob, index, found)
     written = 0
     for name, block in blocks.items():
         layer = gp.find_layer(ob, name)

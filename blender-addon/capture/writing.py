@@ -16,7 +16,7 @@ from ..blender import grease_pencil as gp
 from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
-from . import correspondence
+from . import absence, correspondence
 from .contours import CURVE_STYLE, POINT_STYLE, Contours, Drawing, Part, Stroke
 from .corrections import Corrections
 
@@ -53,6 +53,10 @@ class Block:
     """By attribute: (F, P) or (F, P, k)."""
     order: np.ndarray | None = None
     """(F, P): the parts from back to front on each frame; `None` if they are in that order."""
+    last: int | None = None
+    """The last scene frame with a picture. Up to it, the generated strokes of a frame do not show on the next one."""
+    hidden: frozenset[int] = frozenset()
+    """Scene frames on which a part of the layer is hidden: a key does not show there."""
 
 
 def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
@@ -129,6 +133,17 @@ def laying_out(
     return block
 
 
+def limit(block: Block, ob, layer: int, found: Contours) -> None:
+    """Tells the block of a layer where its strokes end: with the footage, and where parts are hidden."""
+    settings = ob.rototoon
+    own = {part.number for part in found.parts if part.layer == layer}
+    times = [time for item in settings.parts if item.number in own for time in absence.of(item)]
+    first, block.last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
+    spans = [(low + settings.frame_offset, high + settings.frame_offset) for low, high in times]
+    hidden = (range(max(low, first), min(high, block.last) + 1) for low, high in spans)
+    block.hidden = frozenset(frame for span in hidden for frame in span)
+
+
 def _blanks(name: str, frames: int, count: int) -> np.ndarray:
     """(frames, count[, k]): an attribute's default values."""
     like = gp.blank(name, count)
@@ -182,7 +197,8 @@ def _fill_style(block: Block, index: int, part: Part, found: Contours) -> None:
 def write(layer, block: Block, before: Iterable[int]) -> int:
     """Writes a block into a layer, and removes generated strokes from the other frames of `before`.
 
-    Drawings that hold their strokes already are not touched. Returns the number of strokes of the block.
+    Drawings that hold their strokes already are not touched. Blender shows a drawing until the next one: where the strokes of a frame
+    end, an empty generated drawing follows. Returns the number of strokes of the block.
     """
     return jobs.drained(write_steps(layer, block, before))
 
@@ -205,8 +221,26 @@ def write_steps(layer, block: Block, before: Iterable[int], read: Mapping[int, n
         for frame, row in due:
             gp.replace_made(drawings[frame][0], rows_of(block, row))
         yield 1 - len(left) / len(wanted)
-    clear(_layer(data, name), [frame for frame in before if frame not in wanted])
+    _end(_layer(data, name), block, wanted, [frame for frame in before if frame not in wanted])
     return int(block.present.sum())
+
+
+def _end(layer, block: Block, wanted: Iterable[int], others: list[int]) -> None:
+    """Removes generated strokes from the frames `others`, and ends the strokes of the other frames."""
+    drawings = gp.drawings(layer)
+    # The artist may have removed some meanwhile.
+    there = {frame: drawings[frame] for frame in others if frame in drawings}
+    empty = {frame for frame, (handle, kind) in there.items() if kind == gp.GENERATED and len(gp.offsets(handle)) == 1}
+    clear(layer, [frame for frame in others if frame not in empty])
+    drawn = set(gp.frame_numbers(layer)) - empty
+    ends = ends_of(wanted, drawn, block.last) | {frame for frame in block.hidden if frame - 1 in drawn and frame not in drawn}
+    gp.remove_frames(layer, sorted(empty - ends))
+    gp.make_frames(layer, sorted(ends), gp.GENERATED)
+
+
+def ends_of(frames: Iterable[int], drawn: set[int], last: int | None) -> set[int]:
+    """The frames after some frames, up to `last`, that have no drawing."""
+    return set() if last is None else {f + 1 for f in frames if f + 1 not in drawn and f < last}
 
 
 def _layer(data, name: str):

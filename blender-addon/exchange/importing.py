@@ -33,6 +33,7 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
     if tracks:
         parts = [part for part in found.parts if part.keys]
         block = writing.lay_out(0, parts, tracks, found, mapper, fixed)
+        writing.limit(block, ob, 0, found)
         writing.write(gp.find_layer(ob, found.layer_names[0]), block, [])
     curves = _curves(project, settings.frame_offset)
     if curves:
@@ -56,7 +57,7 @@ def _empty(ob) -> None:
 def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     part = settings.parts.add()
     part.number, part.name = number, entry["name"]
-    part.closed, part.depth = bool(entry.get("closed", False)), float(entry.get("depth", 0.0))
+    part.closed, part.depth = bool(entry.get("closed", True)), float(entry.get("depth", 0.0))
     part.count = len(next(iter(entry.get("keys", {}).values()), []))
     part.extra = files.unknown_of_part(entry)
     ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
@@ -68,7 +69,7 @@ def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
     drawn: dict[int, list[tuple[float, int, bool, np.ndarray]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
         for frame, points in by_frame(entry.get("keys")).items():
-            row = (float(entry.get("depth", 0.0)), number, bool(entry.get("closed")), np.asarray(points, np.float64))
+            row = (float(entry.get("depth", 0.0)), number, bool(entry.get("closed", True)), np.asarray(points, np.float64))
             drawn.setdefault(frame + offset, []).append(row)
     mapper = placement.Mapper(ob, drawn, {}, [layer.name])
     gp.make_frames(layer, sorted(drawn), gp.KEYFRAME)
@@ -115,7 +116,9 @@ def _results(part: contours.Part, entry: dict[str, Any], mapper, offset: int):
     if not points:
         return None, None
     frames = sorted(points)
-    confidence = [np.asarray(sure.get(f, np.ones(part.count)), np.float64) for f in frames]
+    # Values of another number are those of other tracks, and are not known here.
+    known = {f: values for f, values in sure.items() if len(values) == part.count}
+    confidence = [np.asarray(known.get(f, np.ones(part.count)), np.float64) for f in frames]
     track = writing.Track(np.array(frames) + offset, np.stack([points[f] for f in frames]), np.stack(confidence))
     return track, fixed
 
@@ -133,5 +136,5 @@ def _curves(project: dict[str, Any], offset: int) -> dict[tuple[int, int], list[
         (number, frame + offset): [np.asarray(path, np.float64) for path in segments]
         for number, entry in enumerate(project.get("parts", []), 1)
         for frame, segments in by_frame(entry.get("curves")).items()
-        if segments
+        if snapping.complete(segments, len(next(iter(entry.get("keys", {}).values()), [])), bool(entry.get("closed", True)))
     }

@@ -207,6 +207,7 @@ def _write(ob, reading: Reading, tracks: Mapping[int, writing.Track], taken: Map
         if index in found.closed:
             continue
         block = yield from writing.laying_out(index, found.parts, dict(tracks), found, reading.mapper, reading.corrections)
+        writing.limit(block, ob, index, found)
         _hold(block, [part for part in found.parts if part.number in tracks and part.layer == index], taken)
         layer = gp.find_layer(ob, name)
         yield from writing.write_steps(layer, block, list(gp.drawings(layer)))
@@ -235,7 +236,7 @@ def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[
     for part in reading.found.parts:
         allowed = taken.get(part.number, set()) | (part.keys.keys() if taken.get(part.number) else set())
         for frame, segments in by_frame(sent.get(part.name, {}).get("curves")).items():
-            if frame + offset in allowed and segments:
+            if frame + offset in allowed and snapping.complete(segments, part.count, part.closed):
                 curves[part.number, frame + offset] = [np.asarray(path, np.float64) for path in segments]
     if not curves:
         return ""

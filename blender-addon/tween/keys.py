@@ -28,6 +28,8 @@ class Frames:
     """Keys that were in-betweens until the artist changed them."""
     blank: set[int] = field(default_factory=set)
     """Keys without strokes."""
+    ends: set[int] = field(default_factory=set)
+    """Those of them that are not the artist's: they end what was tracked or snapped."""
 
 
 def is_tweened(handle, kind: str) -> bool:
@@ -55,6 +57,8 @@ def frames_of(layer, record: records.Layer) -> Frames:
             continue
         if len(gp.offsets(handle)) < 2:
             found.blank.add(number)
+            if kind == gp.GENERATED:
+                found.ends.add(number)
     found.keys.sort()
     found.made.sort()
     return found

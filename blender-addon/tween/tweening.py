@@ -97,7 +97,8 @@ def _plan_group(
             del sheet.wanted[k]
             result.current += 1
         _add_calls(ob, sheet, result)
-    result.blank += sum(span[0] in found.blank or span[1] in found.blank for span in wanted)
+    blank = found.blank - found.ends
+    result.blank += sum(span[0] in blank or span[1] in blank for span in wanted)
 
 
 def _runs(found: ks.Frames) -> list[list[int]]:

@@ -269,7 +269,7 @@ OPERATORS = {
     "footage_from_reference": Call(prepare=_reference),
     "guess_bones": Call(on="Rig"),
     "help": Call(changes=False),
-    "hide_part": Call(_C, _C, prepare=_on_generated),
+    "hide_part": Call(_C | {SNAPPED}, _C, prepare=_on_generated),
     "hidden_lines": Call(_I | {SNAPPED, LIMBS}),
     "import_document": Call(_C | {SNAPPED}, _C | {SNAPPED}, options={"filepath": "{folder}/given.json", "into": "ACTIVE"}),
     "import_motion": Call(changes=False, options={"filepath": "{folder}/walk.bvh"}),

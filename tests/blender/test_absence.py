@@ -47,6 +47,54 @@ def test_a_hidden_part_has_no_contour_until_it_is_there_again(addon, fake, tmp_p
     assert addon("capture.absence").of(bpy.context.object.rototoon.parts[0]) == [[4 - offset, 5 - offset]]
 
 
+def shown(addon, ob, layer, frame):
+    """The number of strokes that a layer shows on a frame. Blender shows a drawing until the next one."""
+    gp = addon("blender.grease_pencil")
+    before = [number for number in gp.frame_numbers(ob.data.layers[layer]) if number <= frame]
+    return len(gp.offsets(gp.drawings(ob.data.layers[layer])[max(before)][0])) - 1 if before else 0
+
+
+def alone(addon, tmp_path):
+    """The square alone on its layer, keyed on frames 1 and 9, tracked and snapped."""
+    ob = shots.set_up(tmp_path)
+    shots.draw(addon, ob, 1, [shots.square(0)])
+    bpy.context.scene.frame_set(9)
+    bpy.ops.rototoon.new_key()
+    bpy.ops.rototoon.track()
+    bpy.ops.rototoon.snap()
+    return ob
+
+
+@pytest.mark.parametrize("frames", [[4, 5], [2, 3], [7, 8], [2, 3, 4, 5, 6, 7, 8]])
+def test_a_hidden_part_alone_on_its_layer_does_not_show(addon, library, tmp_path, frames):
+    """Not even by the drawing before, whether tracked or a key, and its snapped line goes too."""
+    ob = alone(addon, tmp_path)
+    for frame in frames:
+        assert hide(ob, frame) == {"FINISHED"}
+
+    def gone(layer):
+        return [frame for frame in range(1, 10) if not shown(addon, ob, layer, frame)]
+
+    assert gone("Contours") == gone("Snapped") == frames
+    for _ in range(2):
+        bpy.ops.rototoon.track()
+        bpy.ops.rototoon.snap()
+        assert gone("Contours") == gone("Snapped") == frames
+    path = tmp_path / "out.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    # There again, no empty drawing is left.
+    hide(ob, frames[0], frames="STRETCH")
+    bpy.ops.rototoon.track()
+    assert not gone("Contours")
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    ob = bpy.context.object
+    assert gone("Contours") == gone("Snapped") == frames
+    bpy.context.scene.frame_set(frames[0])
+    assert bpy.ops.rototoon.new_key() == {"FINISHED"} and shown(addon, ob, "Contours", frames[0]) == 1
+    bpy.ops.rototoon.clear_generated()
+    assert addon("blender.grease_pencil").frame_numbers(shots.layer_of(ob)) == [1, frames[0], 9]
+
+
 def test_the_library_leaves_hidden_frames_out(addon, library, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()

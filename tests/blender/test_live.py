@@ -378,7 +378,7 @@ def test_one_key_only_is_not_an_error(addon, fake, live, tmp_path):
     assert live.status(ob) == RESTING and sorted(drawings(ob)) == [1]
     ob.rototoon.preset = "rototoon"
     settle(live)
-    assert sorted(drawings(ob)) == [1, 2, 3], "followed outward"
+    assert sorted(drawings(ob)) == [1, 2, 3, 4], "followed outward, and ended"
 
 
 def test_unregistering_leaves_nothing(addon, fake, live, tmp_path):

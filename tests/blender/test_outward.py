@@ -28,6 +28,20 @@ def test_generated_frames_go_outward_and_the_panel_says_where_a_key_is_wanted(ad
     assert said == [("2 parts need a key on frame 2", "KEY_HLT"), ("2 parts need a key on frame 8", "KEY_HLT")]
 
 
+def test_a_lost_part_does_not_go_on_showing(addon, fake, tmp_path):
+    """Blender shows a drawing until the next one, so an empty one ends what was tracked."""
+    ob = one_key(addon, tmp_path)
+    for _ in range(2):
+        bpy.ops.rototoon.track()
+        gp = addon("blender.grease_pencil")
+        strokes = {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in gp.drawings(shots.layer_of(ob)).items()}
+        assert strokes == {3: 2, 4: 2, 5: 2, 6: 2, 7: 2, 8: 0}
+    bpy.context.scene.frame_set(8)
+    assert bpy.ops.rototoon.new_key() == {"FINISHED"}
+    bpy.ops.rototoon.track()
+    assert made(addon, ob)[1] == [6, 7]
+
+
 def test_corrections_beside_a_single_key_are_kept(addon, fake, tmp_path):
     ob = one_key(addon, tmp_path)
     bpy.ops.rototoon.track()

@@ -50,11 +50,16 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
             return f'"{item.name}" is there again' + ("" if ob.rototoon.live else ": press Track")
         pictures = self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture]
         absence.hide(item, pictures)
-        where = listed([number + ob.rototoon.frame_offset for number in pictures])
-        _remove(layer, part, [number + ob.rototoon.frame_offset for number in pictures])
+        frames = [number + ob.rototoon.frame_offset for number in pictures]
+        _remove(layer, part.number, frames)
+        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
+        if snapped is not None and _made(snapped, part.number, frames):
+            self.warn(guard.left_out([snapped]))
+            if not guard.closed(snapped):
+                _remove(snapped, part.number, frames)
         ob.data.update_tag()
         live.note(ob)
-        return f'"{item.name}" is hidden on {where}'
+        return f'"{item.name}" is hidden on {listed(frames)}'
 
     def _stretch(self, ob, part: contours.Part, frame: int) -> list[int]:
         """The pictures around a frame on which the part is lost."""
@@ -73,20 +78,24 @@ def active_part(ob):
     return settings.parts[settings.active_part] if settings.active_part < len(settings.parts) else None
 
 
-def _remove(layer, part: contours.Part, frames: list[int]) -> None:
-    """Removes the generated strokes of a part. A generated frame that is empty then goes too."""
-    drawings, gone = gp.drawings(layer), []
+def _remove(layer, number: int, frames: list[int]) -> None:
+    """Removes the generated strokes of a part. A drawing that is empty then stays, so that no earlier one shows there."""
+    for handle, own in _made(layer, number, frames):
+        gp.remove_strokes(handle, np.flatnonzero(own).tolist())
+
+
+def _made(layer, number: int, frames: list[int]) -> list[tuple]:
+    """The drawings on some frames that have generated strokes of a part, each with which strokes these are."""
+    drawings, found = gp.drawings(layer), []
     for frame in frames:
-        if frame not in drawings or frame not in part.made:
+        if frame not in drawings:
             continue
         handle, kind = drawings[frame]
         strokes = len(gp.offsets(handle)) - 1
-        own = gp.value(handle, gp.MADE, strokes) & (gp.value(handle, gp.PART, strokes) == part.number)
-        if kind == gp.GENERATED and own.all():
-            gone.append(frame)
-        else:
-            gp.remove_strokes(handle, np.flatnonzero(own).tolist())
-    gp.remove_frames(layer, gone)
+        own = gp.value(handle, gp.MADE, strokes) & (gp.value(handle, gp.PART, strokes) == number)
+        if own.any() and (kind == gp.GENERATED or not own.all()):
+            found.append((handle, own))
+    return found
 
 
 CLASSES = (ROTOTOON_OT_hide_part,)
