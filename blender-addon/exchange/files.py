@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from rototoon import LibraryError, RototoonError, Session
 
 from ..blender.errors import Problem
 from ..capture.document import VERSION
@@ -21,25 +22,50 @@ _TOP = {"rototoon", "footage", "parts", "traced"}
 def load(path: str) -> dict[str, Any]:
     """Reads a document from a file, and checks all fields from which strokes are made."""
     try:
-        with open(path, encoding="utf-8") as file:
+        # Editors on Windows put a mark before the text.
+        with open(path, encoding="utf-8-sig") as file:
             document = json.load(file)
     except OSError as error:
         raise Problem(f"Cannot read {path}: {error.strerror}") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise Problem(f"{path} is not a project document: {error}") from error
     try:
         check(document)
     except Problem as problem:
         raise Problem(f"{path}: {problem}") from None
+    _check_all(path)
+    for part in document.get("parts", []):
+        part.setdefault("closed", True)
     return document
+
+
+MOST_TOLD = 3
+"""Most problems of a file that a message lists."""
+
+
+def _check_all(path: str) -> None:
+    """Raises a `Problem` with what the library, which knows every rule, finds wrong in a file.
+
+    Without a library, `check` must do.
+    """
+    try:
+        Session.open(path).close()
+    except LibraryError:
+        return
+    except RototoonError as error:
+        found = [line.removeprefix(f"{path}: ") for line in str(error).splitlines()]
+        told = "; ".join(found[:MOST_TOLD])
+        more = f"; and {len(found) - MOST_TOLD} more" if len(found) > MOST_TOLD else ""
+        raise Problem(f"{path}: {told}{more}") from None
 
 
 def check(document: Any) -> None:
     """Raises a `Problem` that names the field if `document` does not have the form of a project document."""
     version = document.get("rototoon") if isinstance(document, dict) else None
-    if not isinstance(version, int):
+    if not isinstance(version, (int, float)):
         raise wrong("rototoon", version, f"the version {VERSION}: this is not a project document")
-    if version > VERSION:
+    # A newer minor version has more fields, which are kept.
+    if not VERSION <= version < VERSION + 1:
         raise wrong("rototoon", version, f"the version {VERSION}: a newer Rototoon wrote it, so update the extension")
     shot = document.get("footage")
     if not isinstance(shot, dict):
@@ -125,8 +151,12 @@ MOST_UP = 3
 def text(folder: str, document: Mapping[str, Any]) -> str:
     """The text of a document that will be in a folder. If the footage is at most three folders up from there, its path is relative."""
     shot = dict(document["footage"])
-    near = os.path.relpath(shot["pattern"], os.path.abspath(folder))
-    if near.count("..") <= MOST_UP:
+    try:
+        near = os.path.relpath(shot["pattern"], os.path.abspath(folder))
+    except ValueError:
+        # Two drives of Windows.
+        near = ""
+    if near and near.count("..") <= MOST_UP:
         shot["pattern"] = near.replace(os.sep, "/")
     return json.dumps({**document, "footage": shot}, allow_nan=False, separators=(",", ":")) + "\n"
 

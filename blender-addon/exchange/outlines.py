@@ -6,6 +6,7 @@ import numpy as np
 from rototoon.documents import by_frame
 
 from ..blender.masks import Outline
+from ..capture import snapping
 
 SPACING = 4.0
 """Distance between the points of snapped lines, in pixels of the picture."""
@@ -18,7 +19,7 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
     found = []
     for part in sorted(document["parts"], key=lambda part: -part["depth"]):
         points = by_frame(part["keys"]) | by_frame(part.get("tracks"))
-        curves = _whole(by_frame(part.get("curves")), points, part["closed"]) if snapped else {}
+        curves = _complete(by_frame(part.get("curves")), points, part["closed"]) if snapped else {}
         counts = _counts(curves)
         frames = {
             frame + offset: _line(np.asarray(points[frame], np.float64), curves.get(frame), counts, part["closed"])
@@ -30,11 +31,9 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
     return found
 
 
-def _whole(curves: dict[int, list], points: dict[int, list], closed: bool) -> dict[int, list]:
-    """The snapped lines that have a path for each segment. Lines that were fitted or cut since have other numbers of them."""
-    return {
-        frame: paths for frame, paths in curves.items() if len(paths) == len(points.get(frame, ())) - (0 if closed else 1)
-    }
+def _complete(curves: dict[int, list], points: dict[int, list], closed: bool) -> dict[int, list]:
+    """The snapped lines that have a path for each segment."""
+    return {f: paths for f, paths in curves.items() if snapping.complete(paths, len(points.get(f, ())), closed)}
 
 
 def _counts(curves: dict[int, list]) -> np.ndarray:

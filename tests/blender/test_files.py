@@ -106,6 +106,50 @@ def test_bad_documents_are_named(addon, tmp_path, change, message):
     assert len(bpy.data.objects) == before
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda d: d["parts"][0].update(closed="no"), 'closed: found the text "no", expected true or false'),
+        (lambda d: d["parts"][0].update(depth="x"), 'depth: found the text "x", expected a finite number'),
+        (lambda d: d["parts"][0]["pins"]["3"].update({"9": [1, 2]}), "found point 9, expected one of 0 to 3"),
+        (lambda d: d["parts"][0]["centers"].update({"6": "x"}), 'centers."6": found the text "x", expected a point'),
+        (lambda d: d["parts"][0].update(absent="x"), "absent: found the text"),
+        (lambda d: d["footage"].update(fps="x"), "footage.fps: found the text"),
+        (lambda d: d["footage"].update(first=5, last=2), "footage.last: found 2, expected at least the first frame, 5"),
+        (lambda d: d["footage"].update(width=10**12), "footage.width: found 1000000000000, expected 1 to 65535"),
+        (lambda d: d["footage"].update(pattern="x.png"), "has no frame number: expected one %d"),
+        (lambda d: d["parts"][0].update(depth="x", falloff="x", color="x", absent="x"), "; and 1 more"),
+    ],
+)
+def test_the_library_knows_what_else_is_wrong(addon, library, tmp_path, change, message):
+    document = project(tmp_path)
+    change(document)
+    (tmp_path / "bad.json").write_text(json.dumps(document))
+    before = len(bpy.data.objects)
+    with pytest.raises(RuntimeError, match=message) as caught:
+        bpy.ops.rototoon.import_document(filepath=str(tmp_path / "bad.json"))
+    assert "Traceback" not in str(caught.value) and len(bpy.data.objects) == before
+
+
+def test_documents_of_other_programs(addon, tmp_path):
+    """A mark before the text, a newer minor version, no `closed`, and results that do not fit their part."""
+    document = project(tmp_path)
+    document["rototoon"] = 1.2
+    part = document["parts"][0]
+    del part["closed"]
+    part["confidence"]["4"] = [1.0]
+    part["curves"]["4"][2] = []
+    part["curves"]["5"].pop()
+    (tmp_path / "other.json").write_text(json.dumps(document), encoding="utf-8-sig")
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "other.json")) == {"FINISHED"}
+    ob = bpy.context.object
+    assert [part.closed for part in ob.rototoon.parts] == [True, False]
+    assert bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json")) == {"FINISHED"}
+    found = json.loads((tmp_path / "out.json").read_text())["parts"][0]
+    assert found["closed"] and found["confidence"]["4"] == [1.0] * 4
+    assert set(found["curves"]) == set(found["tracks"]) - {"4", "5"}
+
+
 def test_cut_short_document(addon, tmp_path):
     (tmp_path / "short.json").write_text(json.dumps(project(tmp_path))[:300])
     with pytest.raises(RuntimeError, match="not a project document"):

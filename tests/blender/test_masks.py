@@ -181,14 +181,28 @@ def test_ids_are_keyed_by_blender(addon, cli, tmp_path, part):
     assert expected.sum() > 50 and np.abs(found - expected).max() < 1 / 255
 
 
-def test_lines_that_were_cut_after_snapping_follow_the_control_points(addon, fake, tmp_path):
-    """Fit Strokes and Remove Hidden Lines leave snapped lines with other numbers of segments."""
+def test_lines_that_were_fitted_or_cut_after_snapping_follow_the_control_points(addon, fake, library, tmp_path):
+    """Fit Strokes and Remove Hidden Lines leave snapped lines without paths for some segments, or with guides of curves."""
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
     bpy.ops.rototoon.snap()
-    outlines, document = addon("exchange.outlines"), addon("capture.document")
+    outlines, document, gp = addon("exchange.outlines"), addon("capture.document"), addon("blender.grease_pencil")
+    reports = addon("common.reports")
+    bpy.context.scene.frame_set(5)
+    ob.data.layers.active = ob.data.layers["Snapped"]
+    assert bpy.ops.rototoon.fit_strokes() == {"FINISHED"}
+    handle = gp.drawings(ob.data.layers["Snapped"])[7][0]
+    segments = gp.get(handle, gp.SEGMENT, int(gp.offsets(handle)[-1]))
+    gp.put(handle, gp.SEGMENT, np.where(segments == 1, 0, segments))
     whole = document.read(ob, results=True).document
-    whole["parts"][0]["curves"]["5"] = whole["parts"][0]["curves"]["5"][:2]
+    for part in whole["parts"]:
+        assert set(part["tracks"]) - set(part["curves"]) == {"5", "7"}
     found = outlines.outlines(whole, 0, True)
     assert {len(points) for points in found[1].frames.values()} == {len(found[1].frames[5])}
     assert bpy.ops.rototoon.contours_to_mask() == {"FINISHED"}
+    reports.take()
+    assert bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json")) == {"FINISHED"}
+    (report,) = reports.take()
+    assert report.kind == "WARNING" and "fitted or cut since, on 5 and 7; Snap to Ink makes them anew" in report.text
+    bpy.ops.rototoon.snap()
+    assert len(document.read(ob, results=True).document["parts"][0]["curves"]) == 9

@@ -6,9 +6,9 @@ import bpy
 
 from ...blender import guard
 from ...blender.errors import Problem
-from ...capture import document
+from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
-from ...common.wording import counted
+from ...common.wording import counted, listed
 from .. import files, traced
 
 
@@ -34,10 +34,14 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
             raise Problem("No file chosen")
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
         reading = document.read(context.object, results=True, needed=False)
+        document.need_pictures(context.object, reading)
         lines = traced.of(context.object)
         if lines:
             reading.document["traced"] = lines
         files.save(path, reading.document)
+        reshaped = snapping.reshaped(context.object)
+        if reshaped:
+            self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them anew")
         found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not lines else []
         found += [f"traced lines of {counted(len(lines), 'frame')}"] if lines else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
