@@ -1,6 +1,6 @@
 //! `rototoon absent`: says on which frames the picture does not show a part.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, project, render};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::project::output::check_writable;
@@ -55,6 +55,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     } else {
         part.set_absent(first, last);
         part.forget_where_absent();
+        for frame in part.keys.range(frames.clone()).map(|(frame, _)| frame) {
+            line(
+                "warning",
+                &format!("part {name:?} has a key on frame {frame}, so it is there: remove the key to hide it"),
+            );
+        }
     }
     project::save(document, from, to)
 }

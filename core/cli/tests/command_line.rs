@@ -271,6 +271,20 @@ fn a_part_is_marked_as_hidden_and_as_there_again() {
     assert_eq!(frames, ["0", "1", "5", "6"]);
     assert!(absent(&tracked, "3", &again, &["--there"]).status.success());
     assert_eq!(read(&again)["parts"][0]["absent"], json!([[2, 2], [4, 4]]));
+    // Another program may write the field alone. What was tracked there does not show.
+    let mut edited = read(&tracked);
+    edited["parts"][0]["absent"] = json!([[1, 4]]);
+    fs::write(&again, edited.to_string()).unwrap();
+    let checked = command(&["check", text(&again)]).output().unwrap();
+    let told = String::from_utf8_lossy(&checked.stderr).into_owned();
+    assert!(told.contains("tracks.\"1\": found a contour where the part is absent"), "{told}");
+    let drawing = cartoon.path("drawing.svg");
+    good(&["export", text(&again), "-o", text(&drawing)]);
+    let drawing = fs::read_to_string(&drawing).unwrap();
+    assert!(drawing.contains("keyTimes=\"0;0.142857;0.714286\" values=\"visible;hidden;visible\""), "{drawing}");
+    let kept = absent(&project, "5-6", &again, &[]);
+    let told = String::from_utf8_lossy(&kept.stderr).into_owned();
+    assert!(kept.status.success() && told.contains("part \"square\" has a key on frame 6, so it is there"), "{told}");
     let refused = absent(&project, "2-9", &cartoon.path("no.json"), &[]);
     assert!(String::from_utf8_lossy(&refused.stderr).contains("frame 9 is outside the footage"));
     assert!(!cartoon.path("no.json").exists());

@@ -260,6 +260,10 @@ impl PartCheck<'_> {
                 );
             }
         }
+        if let Some(frame) = part.tracks.keys().find(|frame| part.is_absent(**frame)) {
+            let message = "found a contour where the part is absent, so it has no effect: track again";
+            self.warning(format!("tracks.\"{frame}\""), message);
+        }
     }
 
     fn feather(&mut self) {

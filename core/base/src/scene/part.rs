@@ -102,9 +102,11 @@ impl Part {
         frames.windows(2).map(|pair| Span { first: pair[0], last: pair[1] }).collect()
     }
 
-    /// The control points on a frame: the tracked ones, otherwise the artist's key.
+    /// The control points on a frame: the tracked ones, otherwise the artist's key. None where the part is not there, also if
+    /// an earlier track has a contour there.
     pub fn points_at(&self, frame: FrameNumber) -> Option<&Vec<Point>> {
-        self.tracks.get(&frame).or_else(|| self.keys.get(&frame))
+        let tracked = self.tracks.get(&frame).filter(|_| !self.is_absent(frame));
+        tracked.or_else(|| self.keys.get(&frame))
     }
 
     /// The contour on a frame as a polyline: the joined snapped paths if they are complete, otherwise the control
@@ -207,6 +209,17 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_old_track_does_not_show_where_the_part_is_absent() {
+        let at = |x: f64| vec![Point::new(x, 0.0)];
+        let mut part = Part { keys: BTreeMap::from([(0, at(0.0)), (2, at(2.0))]), ..Part::default() };
+        part.tracks = BTreeMap::from([(0, at(0.0)), (1, at(1.0)), (2, at(2.0)), (3, at(3.0))]);
+        part.absent = vec![[1, 2]];
+        let shown: Vec<_> = (0..5).map(|frame| part.points_at(frame).map(|points| points[0].x)).collect();
+        assert_eq!(shown, [Some(0.0), None, Some(2.0), Some(3.0), None]);
+        assert!(part.outline(1).is_none());
+    }
 
     #[test]
     fn times_of_absence_are_joined_and_cut() {
