@@ -72,9 +72,10 @@ def _recognise(
     references = [_reference(part, frame, mapper) for part in candidates]
     shapes = [mapper.at(stroke.layer, frame).to_pixels(stroke.points) for stroke in drawn]
     left = set(range(len(drawn)))
+    labels = [_labels(found, stroke) for stroke in drawn]
     for which, who, points in match(
-        [(part.closed, points) for part, points in zip(candidates, references, strict=True)],
-        [(candidate_closed(stroke, shape), shape) for stroke, shape in zip(drawn, shapes, strict=True)],
+        [(part.closed, points, _labels(found, _nearest(part, frame))) for part, points in zip(candidates, references, strict=True)],
+        [(candidate_closed(stroke, shape), shape, own) for stroke, shape, own in zip(drawn, shapes, labels, strict=True)],
     ):
         part, stroke = candidates[which], drawn[who]
         where = correspondence.locate(shapes[who], points, part.closed)
@@ -89,22 +90,30 @@ def _recognise(
 
 def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
     """The part's contour in pixels: the tracked one on `frame` if there is one, otherwise that of the nearest key."""
-    if frame in part.made:
-        stroke = part.made[frame]
-    else:
-        nearest = min(part.keys or part.made, key=lambda other: (abs(other - frame), other))
-        stroke = (part.keys or part.made)[nearest]
+    stroke = part.made[frame] if frame in part.made else _nearest(part, frame)
     return mapper.at(stroke.layer, stroke.frame).to_pixels(stroke.control_points(part.closed))
 
 
+def _nearest(part: Part, frame: int) -> Stroke:
+    """The part's stroke on the key nearest to a frame."""
+    strokes = part.keys or part.made
+    return strokes[min(strokes, key=lambda other: (abs(other - frame), other))]
+
+
+def _labels(found: Contours, stroke: Stroke) -> list[str]:
+    """What the artist says of a stroke: its layer and its material. They tell look-alikes apart."""
+    material = found.drawings[stroke.layer, stroke.frame].value("material_index")[stroke.index]
+    return [found.layer_names[stroke.layer], str(int(material))]
+
+
 def match(
-    references: list[tuple[bool, np.ndarray]], drawn: list[tuple[bool, np.ndarray]]
+    references: list[tuple[bool, np.ndarray, list[str]]], drawn: list[tuple[bool, np.ndarray, list[str]]]
 ) -> list[tuple[int, int, np.ndarray]]:
     """Matches of drawn contours: (index of the reference, index of the drawn contour, the reference's points on the drawn
     line)."""
 
     def plain(contours):
-        return [{"closed": bool(closed), "points": points.tolist()} for closed, points in contours]
+        return [{"closed": bool(closed), "points": points.tolist(), "labels": labels} for closed, points, labels in contours]
 
     answer = _asked({"references": plain(references), "drawn": plain(drawn)})
     return [(m["reference"], m["drawn"], np.asarray(m["points"], np.float64)) for m in answer["matches"]]

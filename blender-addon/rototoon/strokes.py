@@ -63,7 +63,9 @@ def match_contours(request: Mapping[str, Any]) -> Any:
     """Matches drawn contours to known ones. Order, direction, start and number of points may differ.
 
     The request is ``{"references": [contour, ...], "drawn": [contour, ...]}``. A contour is ``{"closed": bool, "points":
-    [[x, y], ...]}``. It may have a ``"color": [r, g, b]``, sRGB from 0 to 1; colours are compared where both contours have one.
+    [[x, y], ...]}``. It may have a ``"color": [r, g, b]``, sRGB from 0 to 1; colours are compared where both contours have one. It may have
+    ``"labels": [text, ...]``, such as its layer and its material: labels at the same place that differ make a match less likely. Where nothing
+    else decides, the order of the contours does.
 
     The answer is ``{"matches": [{"reference": index, "drawn": index, "points": [[x, y], ...], "cost": number}, ...]}``, sorted
     by reference. `points` are the reference's control points on the drawn line. The cost of equal contours is 0. Contours

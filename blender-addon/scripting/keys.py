@@ -105,7 +105,7 @@ def _control(part: contours.Part | None, name: str, points: np.ndarray, frame: i
     near = min([*part.keys, *part.made], key=lambda other: (abs(other - frame), other))
     stroke = part.keys.get(near) or part.made[near]
     reference = mapper.at(stroke.layer, near).to_pixels(stroke.control_points(part.closed))
-    for _, _, matched in identity.match([(part.closed, reference)], [(part.closed, points)]):
+    for _, _, matched in identity.match([(part.closed, reference, [])], [(part.closed, points, [])]):
         where = correspondence.locate(points, matched, part.closed)
         control = correspondence.invert(where, len(points), part.closed)
         if control is not None and correspondence.invert(control, part.count, part.closed) is not None:

@@ -47,6 +47,38 @@ def test_drawn_afresh_is_matched_and_tracked(addon, tmp_path):
     assert max(worst(addon, ob, frame) for frame in range(2, 5)) < 3
 
 
+@pytest.mark.parametrize("by", ["layer", "material", "order"])
+def test_look_alikes_are_told_apart_as_the_artist_did(addon, tmp_path, by):
+    """Two equal legs lie in one place on the first key, as in a walk, and stand apart on the next."""
+    ob = shots.set_up(tmp_path)
+    gp = addon("blender.grease_pencil")
+    ob.data.materials.append(ob.data.materials[0].copy())
+    names = ["Contours.far", "Contours.near"] if by == "layer" else ["Contours", "Contours"]
+    turned = by != "order"
+
+    def leg(foot):
+        return np.array([[75.0, 30], [85, 30], [foot + 4, 80], [foot - 4, 80]])
+
+    for frame, feet in ((1, (80, 80)), (9, (50, 110))):
+        legs = list(zip(names, feet, (0, 1), strict=True))
+        # On the second key the near leg is drawn first.
+        for name, foot, material in legs[::-1] if turned and frame == 9 else legs:
+            ob.rototoon.contours_layer = name
+            if ob.data.layers.get(name) is None:
+                ob.data.layers.new(name)
+            drawing = shots.draw(addon, ob, frame, [leg(foot)])
+            if by == "material":
+                found = gp.value(drawing, "material_index", len(drawing.strokes))
+                found[-1] = material
+                gp.put(drawing, "material_index", found)
+    ob.rototoon.contours_layer = "Contours"
+    bpy.ops.rototoon.match_contours()
+    found = addon("capture.contours").read(ob)
+    mapper = addon("capture.document").mapper_of(ob, found)
+    feet = [mapper.at(part.keys[9].layer, 9).to_pixels(part.keys[9].points)[2:, 0].mean() for part in found.parts]
+    assert feet == pytest.approx([50, 110], abs=0.1)
+
+
 def test_snapped_line_lies_on_the_ink(addon, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()

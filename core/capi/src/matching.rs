@@ -19,6 +19,8 @@ struct Contour {
     closed: bool,
     #[serde(default)]
     color: Option<[f32; 3]>,
+    #[serde(default)]
+    labels: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -36,7 +38,7 @@ struct Counterpart {
 
 impl From<Contour> for DrawnContour {
     fn from(contour: Contour) -> Self {
-        Self { points: contour.points, closed: contour.closed, colour: contour.color }
+        Self { points: contour.points, closed: contour.closed, colour: contour.color, labels: contour.labels }
     }
 }
 

@@ -70,7 +70,8 @@ fn key_of(part: &Part, frame: FrameNumber, points: Vec<Point>, set: bool) -> Vec
     let nearest = part.keys.iter().min_by_key(|(key, _)| (i64::from(**key) - i64::from(frame)).abs());
     let shown = outline_at(part, f64::from(frame), false).filter(|shape| shape.len() == part.point_count());
     let Some(before) = shown.or_else(|| nearest.map(|(_, points)| points.clone())) else { return points };
-    let contour = |points: &[Point]| DrawnContour { points: points.to_vec(), closed: part.closed, colour: None };
+    let contour =
+        |points: &[Point]| DrawnContour { points: points.to_vec(), closed: part.closed, ..Default::default() };
     // The artist says which part it is, however little it resembles it.
     let options = MatchOptions { max_cost: MOST_COST, ..MatchOptions::default() };
     let found = match_contours(&[contour(&before)], &[contour(&points)], &options);

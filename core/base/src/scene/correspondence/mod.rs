@@ -1,14 +1,14 @@
 //! Matching of freshly drawn contours to the parts of an earlier key.
 //!
 //! The order, direction, starting point and number of points of the drawn contours are arbitrary. First `figure`
-//! decides which contour is which part, from shape, size, place in the figure and colour together. Then `elastic` finds
+//! decides which contour is which part, from shape, size, place in the figure, colour and labels together. Then `elastic` finds
 //! the part's control points on the contour. A part that fits no contour stays without counterpart.
 //!
 //! If an artist drew a contour with as many points as the part has, the drawn points are probably meant. They are
 //! returned themselves if the elastic map agrees with a plain shift of the indices.
 //!
 //! Limits: contours are compared by their appearance only. Two identical limbs that have changed places can be
-//! distinguished only by their neighbours and colours. A disc does not show its rotation; it is assumed to rotate with
+//! distinguished only by their neighbours, colours and labels; where nothing tells them apart, by the order of drawing. A disc does not show its rotation; it is assumed to rotate with
 //! the figure.
 
 mod elastic;
@@ -38,6 +38,8 @@ pub struct DrawnContour {
     pub closed: bool,
     /// Its colour, sRGB-encoded, 0 to 1. Colours are compared if both contours have one.
     pub colour: Option<[f32; 3]>,
+    /// What the artist says of it, such as its layer and its material. Labels at the same place of both lists are compared.
+    pub labels: Vec<String>,
 }
 
 /// Options of the matching.
@@ -114,6 +116,7 @@ pub fn match_contours(
     let matched = figures.choose().into_iter().enumerate().map(|(i, chosen)| {
         let Chosen { drawn: j, cost, turn } = chosen?;
         let (ways, sizes) = figures.ways(i, j, turn);
+        let cost = (cost - figure::order(i, parts.len(), j, drawn.len())).max(0.0);
         Some(Match { drawn: j, points: corresponding(&parts[i], &drawn[j], &ways, sizes), cost })
     });
     Ok(matched.collect())

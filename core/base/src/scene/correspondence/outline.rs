@@ -114,7 +114,7 @@ mod tests {
 
     fn hook(closed: bool) -> DrawnContour {
         let points = [(0.0, 0.0), (30.0, 0.0), (30.0, 12.0), (9.0, 15.0)];
-        DrawnContour { points: points.map(|(x, y)| Point::new(x, y)).into(), closed, colour: None }
+        DrawnContour { points: points.map(|(x, y)| Point::new(x, y)).into(), closed, ..Default::default() }
     }
 
     #[test]

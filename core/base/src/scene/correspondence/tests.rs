@@ -8,17 +8,21 @@ fn limb(a: (f64, f64), b: (f64, f64), wide: f64, narrow: f64, count: usize) -> D
     let (a, b) = (Point::new(a.0, a.1), Point::new(b.0, b.1));
     let side = (b - a).normalize().perp();
     let corners = [a + side * wide, b + side * narrow, b - side * narrow, a - side * wide];
-    DrawnContour { points: polyline::resample(&corners, true, count), closed: true, colour: None }
+    DrawnContour { points: polyline::resample(&corners, true, count), closed: true, ..Default::default() }
 }
 
 fn oval(centre: (f64, f64), size: (f64, f64), count: usize) -> DrawnContour {
     let at = |k: usize| Point::from_angle(k as f64 * std::f64::consts::TAU / count as f64);
     let points = (0..count).map(|k| Point::new(centre.0, centre.1) + at(k) * Point::new(size.0, size.1)).collect();
-    DrawnContour { points, closed: true, colour: None }
+    DrawnContour { points, closed: true, ..Default::default() }
 }
 
 fn line(points: &[(f64, f64)]) -> DrawnContour {
-    DrawnContour { points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(), closed: false, colour: None }
+    DrawnContour {
+        points: points.iter().map(|&(x, y)| Point::new(x, y)).collect(),
+        closed: false,
+        ..Default::default()
+    }
 }
 
 /// Ten parts; arms, legs, and eyes are nearly equal.
@@ -194,4 +198,45 @@ fn points_that_are_no_numbers_are_named() {
     assert_eq!(error.to_string(), "part 3: point 2 is not a pair of finite numbers");
     let error = match_contours(&figure(), &broken, &MatchOptions::default()).unwrap_err();
     assert_eq!(error.to_string(), "drawn contour 3: point 2 is not a pair of finite numbers");
+}
+
+/// Two legs of a walk in one place on the first drawing and apart on the next, below a body.
+fn walking(labels: [&str; 2]) -> (Vec<DrawnContour>, Vec<DrawnContour>) {
+    let leg = |foot: f64, label: &str| DrawnContour {
+        labels: vec!["ink".into(), label.into()],
+        ..limb((100.0, 100.0), (foot, 180.0), 9.0, 6.0, 12)
+    };
+    let body = oval((100.0, 60.0), (20.0, 40.0), 14);
+    let [far, near] = labels;
+    let passing = vec![body.clone(), leg(100.0, far), leg(100.0, near)];
+    (passing, vec![body, leg(60.0, far), leg(140.0, near)])
+}
+
+#[test]
+fn labels_tell_look_alikes_apart() {
+    let (parts, drawn) = walking(["far leg", "near leg"]);
+    for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1]] {
+        let shuffled: Vec<_> = order.iter().map(|&k| drawn[k].clone()).collect();
+        let found = match_contours(&parts, &shuffled, &MatchOptions::default()).unwrap();
+        let who: Vec<_> = found.into_iter().map(|found| order[found.unwrap().drawn]).collect();
+        assert_eq!(who, [0, 1, 2], "{order:?}");
+    }
+    // Drawn on other layers, parts are where they are.
+    let mut moved = figure();
+    moved.iter_mut().enumerate().for_each(|(k, contour)| contour.labels = vec![format!("{k}")]);
+    let mut again = moved.clone();
+    again.iter_mut().for_each(|contour| contour.labels = vec!["one layer".into()]);
+    let found = match_contours(&moved, &again, &MatchOptions::default()).unwrap();
+    assert!(found.iter().enumerate().all(|(k, found)| found.as_ref().is_some_and(|found| found.drawn == k)));
+}
+
+#[test]
+fn the_order_of_drawing_decides_where_nothing_else_does() {
+    let (parts, drawn) = walking(["", ""]);
+    let who = |drawn: &[DrawnContour]| -> Vec<usize> {
+        let found = match_contours(&parts, drawn, &MatchOptions::default()).unwrap();
+        found.into_iter().map(|found| found.unwrap().drawn).collect()
+    };
+    assert_eq!(who(&drawn), [0, 1, 2]);
+    assert_eq!(who(&[drawn[0].clone(), drawn[2].clone(), drawn[1].clone()]), [0, 1, 2]);
 }
