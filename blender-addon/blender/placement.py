@@ -49,9 +49,14 @@ class Mapper:
         return not self._moves
 
     def _add(self, ob, layers, frame: int | None) -> None:
-        view = view_of(ob)
+        try:
+            view = view_of(ob)
+        except np.linalg.LinAlgError:
+            raise Problem("The camera or reference image that shows the footage has a scale of 0: set its scale to 1") from None
         for index, layer in enumerate(layers):
             matrix = cameras.layer_to_world(ob, layer)
+            if not np.linalg.det(matrix[:3, :3]):
+                raise Problem(f'"{ob.name}", or what it or its layer hangs on, has a scale of 0: set the scale to 1')
             # The view's z axis in layer space: the normal of a plane that faces the view.
             normal = (view.to_view @ matrix)[2, :3]
             normal = normal / np.linalg.norm(normal)

@@ -330,3 +330,43 @@ def test_a_file_goes_to_another_version_and_back(addon, fake, tmp_path, version)
         assert track.pixels == pytest.approx(wanted[part].pixels, abs=1e-4)
         assert track.is_key.tolist() == wanted[part].is_key.tolist()
     goes_on(addon, ob)
+
+
+def test_lines_without_a_place_and_objects_without_a_size_are_told(addon, fake, tmp_path):
+    """Drawings of scripts and drivers may hold them. The message says where, and nothing changes."""
+    ob = shots.two_keys(addon, tmp_path)
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(shots.layer_of(ob))[9][0]
+    good = gp.positions(handle, 8)
+    bad = good.copy()
+    bad[1] = np.nan
+    before = shots.snapshot(ob)
+    gp.put(handle, "position", bad)
+    for name in ("track", "match_contours", "new_key", "contours_to_mask"):
+        with pytest.raises(RuntimeError, match='A line on frame 9 of the layer "Contours" has a point without a place'):
+            bpy.ops.rototoon.__getattr__(name)()
+    gp.put(handle, "position", good)
+    ob.scale = (0, 1, 1)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="has a scale of 0: set the scale to 1"):
+        bpy.ops.rototoon.track()
+    assert shots.snapshot(ob) == before
+    ob.scale = (1, 1, 1)
+    bpy.context.view_layer.update()
+    assert bpy.ops.rototoon.track() == {"FINISHED"}
+
+
+def test_a_key_where_the_footage_has_no_picture_is_told_in_frames_of_the_scene(addon, library, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    for frame in (-3, 40, 41):
+        shots.draw(addon, ob, frame, [shots.square(2)])
+    before = shots.snapshot(ob)
+    where = 'for the contours on the layer "Contours" on -3 and 40 and 41: delete or move them; it has frames 1 to 9'
+    for name, options in (("track", {}), ("export_document", {"filepath": str(tmp_path / "out.json")})):
+        with pytest.raises(RuntimeError, match=where):
+            getattr(bpy.ops.rototoon, name)(**options)
+    assert shots.snapshot(ob) == before and not (tmp_path / "out.json").exists()
+    layer = shots.layer_of(ob)
+    for frame in (-3, 40, 41):
+        layer.frames.remove(frame)
+    assert bpy.ops.rototoon.track() == {"FINISHED"}
