@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xdcaabfb4780f82b5
+HEADER_HASH = 0xfe10981ec33276f8
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0

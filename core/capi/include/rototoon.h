@@ -164,7 +164,8 @@ RototoonStatus rototoon_parameters(struct RototoonText **parameters, struct Roto
 // of points may differ.
 //
 // `request` is JSON: `{"references": [contour], "drawn": [contour]}`. A contour is `{"closed": bool, "points":
-// [[x, y]], "color": [r, g, b]}`, with points in pixels and the colour in sRGB from 0 to 1. The colour may be left out.
+// [[x, y]], "color": [r, g, b], "labels": [text]}`, with points in pixels and the colour in sRGB from 0 to 1. Colour and
+// labels may be left out. Labels at the same place of two lists that differ, such as layer and material, make a match less likely.
 //
 // `matches` is JSON: `{"matches": [{"reference": index, "drawn": index, "points": [[x, y]], "cost": number}]}`, in the
 // order of the references. `points` are the reference's control points, placed on the drawn contour. The cost is 0 for
