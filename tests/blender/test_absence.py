@@ -47,6 +47,18 @@ def test_a_hidden_part_has_no_contour_until_it_is_there_again(addon, fake, tmp_p
     assert addon("capture.absence").of(bpy.context.object.rototoon.parts[0]) == [[4 - offset, 5 - offset]]
 
 
+def test_corrections_that_go_with_a_hidden_contour_are_told(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    shots.move(addon, ob, 4, 1, (5.0, -3.0), which=[1])
+    reports = addon("common.reports")
+    reports.take()
+    for frame, told in ((4, True), (5, False)):
+        hide(ob, frame)
+        (report,) = reports.take()
+        assert ("your corrections of it on 4 are gone: Undo brings them back" in report.text) == told, report
+
+
 def shown(addon, ob, layer, frame):
     """The number of strokes that a layer shows on a frame. Blender shows a drawing until the next one."""
     gp = addon("blender.grease_pencil")

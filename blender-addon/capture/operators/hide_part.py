@@ -51,12 +51,15 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
         pictures = self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture]
         absence.hide(item, pictures)
         frames = [number + ob.rototoon.frame_offset for number in pictures]
+        corrected = [number for number in frames if _is_corrected(found, part, number)]
         _remove(layer, part.number, frames)
         snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
         if snapped is not None and _made(snapped, part.number, frames):
             self.warn(guard.left_out([snapped]))
             if not guard.closed(snapped):
                 _remove(snapped, part.number, frames)
+        if corrected:
+            self.warn(f"your corrections of it on {listed(corrected)} are gone: Undo brings them back")
         ob.data.update_tag()
         live.note(ob)
         return f'"{item.name}" is hidden on {listed(frames)}'
@@ -76,6 +79,12 @@ def active_part(ob):
     """The part that is chosen in the list; `None` if there is none."""
     settings = ob.rototoon
     return settings.parts[settings.active_part] if settings.active_part < len(settings.parts) else None
+
+
+def _is_corrected(found: contours.Contours, part: contours.Part, frame: int) -> bool:
+    """Whether the artist has corrected the generated contour of a part on a frame."""
+    stroke = part.made.get(frame)
+    return stroke is not None and bool(found.drawings[stroke.layer, frame].corrected()[stroke.index])
 
 
 def _remove(layer, number: int, frames: list[int]) -> None:
