@@ -4,7 +4,7 @@
 
 use super::instance::{NO_SHAPES, ORIGIN};
 use super::track::BUSY;
-use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
+use super::{choosing, edits, fresh, instance, listing, marks, numbering, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -157,6 +157,9 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
         Some(document) => Document::clone(&document),
         None => fresh::document(effect)?,
     };
+    // The file has the composition's frames.
+    let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
+    numbering::shift(&mut document.scene, offset);
     let still = document.scene.footage.first;
     let format = match extension {
         "nk" => ShapeFormat::Nuke { still },
@@ -166,6 +169,7 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     };
     let text = file::text(path).map_err(|error| told(&error))?;
     let warnings = pipeline::import(&mut document, &text, format).map_err(|error| told(&error))?;
+    numbering::shift(&mut document.scene, offset.saturating_neg());
     edits::store_imported(effect, document, &path.to_string_lossy())?;
     for warning in warnings.iter().take(MOST_WARNINGS) {
         instance(effect)?.note(effect, warning, false);

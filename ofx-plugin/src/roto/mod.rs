@@ -23,7 +23,7 @@
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
-//!   [`id_files`]: writes ids as files for keyers
+//!   [`id_files`]: writes ids as files for keyers; [`numbering`]: the composition's frames in these files
 //! - [`track`]: the button Track; [`job`]: runs the core's tracker on the source's frames, which [`fetching`] gets from the host
 //! - [`follow`]: tracks an edit at once, on the [`film`] that stays in memory; [`watch`]: compares rendered frames with it, by
 //!   their [`sums`]; [`stale`]: tracks of a source that has changed
@@ -46,6 +46,7 @@ pub mod marks;
 pub mod measured;
 pub mod mixing;
 pub mod motion;
+pub mod numbering;
 pub mod outlines;
 pub mod overlay;
 pub mod overlay_entry;

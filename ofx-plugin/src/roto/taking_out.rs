@@ -5,7 +5,7 @@ use super::motion::Motion;
 use super::placement::Placement;
 use super::settings::{self, Settings};
 use super::state::State;
-use super::{id_files, instance, motion};
+use super::{id_files, instance, motion, numbering};
 use crate::ofx::{Effect, Failure};
 use rototoon::export::SvgOptions;
 use rototoon::geometry::Point;
@@ -81,9 +81,10 @@ fn dressed(effect: &Effect, document: &Document, time: f64) -> Result<Document, 
     Ok(document)
 }
 
-/// Writes the shapes to the export file. Its extension names the format.
+/// Writes the shapes to the export file, on the frames of the composition. Its extension names the format.
 pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
-    let document = dressed(effect, &*document(effect)?, time)?;
+    let mut document = dressed(effect, &*document(effect)?, time)?;
+    let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let path = effect.parameters()?.text(c"exportFile")?;
     let path = Path::new(path.trim());
     if path.as_os_str().is_empty() {
@@ -91,9 +92,9 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
     if extension == "exr" {
-        let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
         return id_files::write(effect, &document, &path.to_string_lossy(), offset);
     }
+    numbering::shift(&mut document.scene, offset);
     let text = match extension.as_str() {
         "nk" => pipeline::export_nuke(&document, SPACING),
         "ntp" => pipeline::export_natron_project(&document, SPACING),
