@@ -335,6 +335,8 @@ mod tests {
         };
         assert!(reason(b"").contains("not a PNG"));
         assert!(reason(b"a text, not a picture").contains("not a PNG"));
+        let gif = reason(b"GIF89a\x01\0\x01\0\0\0\0,\0\0\0\0\x01\0\x01\0\0\x02\0;");
+        assert!(gif.contains("found a GIF picture, expected PNG,") && gif.contains("save its frames as PNG"), "{gif}");
         let whole = png([4, 1], 8, 0, &[], &[0, 1, 2, 3, 4], &[]);
         assert!(!reason(&whole[..30]).is_empty());
         assert!(!reason(&whole[..50]).is_empty());

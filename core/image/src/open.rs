@@ -40,6 +40,12 @@ pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     let Some(format) = reader.format() else {
         return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
     };
+    if !format.reading_enabled() {
+        let found = format.to_mime_type().trim_start_matches("image/").to_uppercase();
+        let message =
+            format!("found a {found} picture, expected PNG, JPEG, TIFF, BMP, WebP or OpenEXR: save its frames as PNG");
+        return Err(DecodeError::Unreadable(message));
+    }
     if format == ImageFormat::Jpeg && complete {
         reader = whole_jpeg(path, length)?;
     }
