@@ -73,6 +73,15 @@ impl Axes {
     pub fn coordinates(&self, row: &Row) -> Vec<f64> {
         self.vectors.iter().map(|axis| axis.iter().zip(row).map(|(a, b)| a * b).sum()).collect()
     }
+
+    /// The posture of coordinates.
+    pub fn posture(&self, coordinates: &[f64]) -> Row {
+        let mut row = [0.0; WIDTH];
+        for (axis, along) in self.vectors.iter().zip(coordinates) {
+            row.iter_mut().zip(axis).for_each(|(value, v)| *value += along * v);
+        }
+        row
+    }
 }
 
 /// An orthonormal basis of the postures that the exchange of sides keeps (`sign` 1) or negates (−1).
@@ -144,7 +153,7 @@ mod tests {
             }
         }
         let (row, found) = (&rows[3], axes.coordinates(&rows[3]));
-        let back: Row = std::array::from_fn(|d| (0..WIDTH).map(|a| found[a] * axes.vectors[a][d]).sum());
+        let back = axes.posture(&found);
         assert!(row.iter().zip(back).all(|(a, b)| (a - b).abs() < 1e-9));
     }
 

@@ -18,7 +18,7 @@
 //!
 //! Limits: at least [`LEAST`] other characters are needed; with fewer the plain prediction stays. The work is limited to [`WORK`] operations.
 
-use super::basis::COSINES;
+use super::basis::{Axes, COSINES};
 use super::cells::Cells;
 use super::kernels::Kernels;
 use super::stance;
@@ -84,7 +84,7 @@ fn choose(errors: &[(usize, Vec<f64>)]) -> usize {
 pub(super) fn judge(
     cells: &Cells,
     kernels: &Kernels,
-    even: usize,
+    axes: &Axes,
     (style, motion, content): (usize, usize, usize),
     predicted: &mut [f64],
 ) -> Option<Sure> {
@@ -107,7 +107,7 @@ pub(super) fn judge(
         .take(most)
         .filter_map(|&(a, b)| {
             let keep = |s: usize, m: usize| hold(s, m) && (s != a || (m != b && own.contains(&m)));
-            episode(cells, kernels, even, (a, b, content), &keep)
+            episode(cells, kernels, axes, (a, b, content), &keep)
         })
         .collect();
     let errors: Vec<(usize, Vec<f64>)> =
@@ -130,12 +130,12 @@ pub(super) fn judge(
 fn episode(
     cells: &Cells,
     kernels: &Kernels,
-    even: usize,
+    axes: &Axes,
     (a, b, content): (usize, usize, usize),
     keep: &dyn Fn(usize, usize) -> bool,
 ) -> Option<Episode> {
     let mean = stance::mean(cells, b, keep);
-    let found = stance::from(cells, kernels, even, (a, b), keep)?;
+    let found = stance::from(cells, kernels, axes, (a, b), keep)?;
     let (truth, copy) = (&cells.block(a, b)[..cells.axes], &cells.block(content, b)[..cells.axes]);
     let distance = |of: &dyn Fn(usize) -> f64| (0..cells.axes).map(|k| (of(k) - truth[k]).powi(2)).sum::<f64>();
     let candidates = candidates()
@@ -190,11 +190,15 @@ mod tests {
         }
     }
 
+    fn axes() -> Axes {
+        Axes { vectors: [2, 3, 5].map(|at| std::array::from_fn(|d| f64::from(u8::from(d == at)))).into(), even: 2 }
+    }
+
     fn judged(cells: &Cells) -> (Vec<f64>, Option<Sure>) {
         let mean = |m: usize| -> Row { std::array::from_fn(|d| if d == WIDTH - 1 { 0.1 * m as f64 } else { 0.0 }) };
         let kernels = Kernels::new(&(0..MOTIONS).map(|m| vec![mean(m); MODEL_FRAMES]).collect::<Vec<_>>());
-        let mut predicted = stance::predict(cells, &kernels, 2, (0, 0)).unwrap();
-        let sure = judge(cells, &kernels, 2, (0, 0, 1), &mut predicted);
+        let mut predicted = stance::predict(cells, &kernels, &axes(), (0, 0)).unwrap();
+        let sure = judge(cells, &kernels, &axes(), (0, 0, 1), &mut predicted);
         (predicted, sure)
     }
 

@@ -19,8 +19,10 @@
 //!   not. Therefore each axis and part gets its own average, weighted by exp(−κ log E), where E is the leave-one-out
 //!   error. This is a likelihood of Gaussian errors; κ is proportional to the number of clips. The clips determine
 //!   these four settings, not a constant.
-//! - **Stance.** The mean of a clip over time is most of what can be predicted. It comes from a process of its own:
-//!   `stance`.
+//! - **Stance and movement.** The mean of a clip over time is most of what can be predicted. It comes from a process of its
+//!   own, `stance`, and so does the rest, `moving`. The averages above give the covariances of errors, and everything in a
+//!   library that is too small or too large for those processes.
+//! - **Strength.** Beyond the most probable result, away from the mean and from the nearest other character: `distinct`.
 //! - **Few clips of a style.** Whether they tell anything is rehearsed on the other characters: `episodes`.
 //! - **Uncertainty.** The covariance of the leave-one-out errors over time, axis by axis, serves as the covariance of
 //!   the prediction. `key_pose` conditions on drawn postures with it.
@@ -33,7 +35,7 @@ use super::cells::Cells;
 use super::grid::{Grid, Row, WIDTH, mean};
 use super::kernels::{Kernels, Weights};
 use super::key_pose::{Errors, condition, deviation};
-use super::{Prediction, STEP, Sure, episodes, stance};
+use super::{Prediction, STEP, Sure, distinct, episodes, moving, stance};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::numeric::vector::dot;
@@ -292,9 +294,9 @@ fn residuals(grid: &Grid, means: &[Vec<Row>]) -> Vec<Row> {
     residuals
 }
 
-/// Puts the predicted stance into the coefficients, if it can be predicted. Where an episode of it is judged sure, the rest
-/// moves towards the content's clip. Returns that judgement.
-fn with_stance(
+/// Puts the predicted stance and movement into the coefficients, if they can be predicted. Where an episode of the stance is judged
+/// sure, the rest moves towards the content's clip. Returns that judgement.
+fn with_parts(
     grid: &Grid,
     cells: &Cells,
     kernels: &Kernels,
@@ -303,8 +305,11 @@ fn with_stance(
     coefficients: &mut [f64],
 ) -> Option<Sure> {
     let (style, motion) = (grid.style, grid.motion);
-    let mut stance = stance::predict(cells, kernels, axes.even, (style, motion))?;
-    let sure = episodes::judge(cells, kernels, axes.even, (style, motion, grid.content), &mut stance);
+    if let Some(moving) = moving::predict(cells, kernels, axes.even, (style, motion)) {
+        coefficients[axes.len()..].copy_from_slice(&moving);
+    }
+    let mut stance = stance::predict(cells, kernels, axes, (style, motion))?;
+    let sure = episodes::judge(cells, kernels, axes, (style, motion, grid.content), &mut stance);
     coefficients[..stance.len()].copy_from_slice(&stance);
     if sure.is_some() {
         let share = episodes::moving_share(cells, grid.content, &errors.by_clip());
@@ -348,12 +353,22 @@ pub(super) fn predict(
     let found: Vec<Vec<LeftOut>> = found.collect::<Result<_, Cancelled>>()?;
     let found: Vec<Vec<Vec<f64>>> = found.into_iter().flatten().flatten().collect();
     let (mut coefficients, errors) = averaged(&cells, &found, target);
-    let sure = with_stance(grid, &cells, &kernels, &axes, &errors, &mut coefficients);
-    let mean = cells.mean_of(grid.motion, grid.style);
-    for (c, mean) in coefficients.iter_mut().zip(&mean) {
-        *c = strength * (*c - mean);
-    }
+    let sure = with_parts(grid, &cells, &kernels, &axes, &errors, &mut coefficients);
+    lay_on(&cells, target, strength, sure, &mut coefficients);
     Ok(Prediction { sure, ..assemble(grid, &axes, coefficients, &errors, keys) })
+}
+
+/// Turns the coefficients into the offset from the mean motion, with this strength. A result that is not trusted is not made
+/// more distinct.
+fn lay_on(cells: &Cells, target: (usize, usize), strength: f64, sure: Option<Sure>, coefficients: &mut [f64]) {
+    let (style, motion) = target;
+    let mean = cells.mean_of(motion, style);
+    let others = (0..cells.characters).filter(|&s| s != style && cells.known[s * cells.motions + motion]);
+    let added = |s: usize| cells.block(s, motion).iter().zip(&mean).map(|(c, mean)| c - mean).collect();
+    let others: Vec<Vec<f64>> = others.map(added).collect();
+    coefficients.iter_mut().zip(&mean).for_each(|(c, mean)| *c -= mean);
+    let trusted = sure.map_or(1.0, |sure| sure.offset * (1.0 - sure.content));
+    distinct::lay_on(coefficients, &others, strength, trusted);
 }
 
 /// The clip from its offset to the mean motion, conditioned on the key poses.

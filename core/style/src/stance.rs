@@ -1,42 +1,34 @@
 //! The stance of a character in a motion: what it adds on average over time.
 //!
-//! Most of the unpredictable part of a clip is its static posture: who stoops, how far, in which motion. The process of
-//! `gaussian` joins characters and motions by a product of covariances, noise included. Even the accidents of a clip
-//! then count as shared by similar characters. For the static part a sum of covariances fits better. Let Z[a, b] be
-//! what character a adds to motion b, one number for each axis. Then
+//! Most of the unpredictable part of a clip is its static posture: who stoops, how far, in which motion. The process is
+//! that of `additive` with one row for each motion. B is the covariance of postures of `kernels`, averaged over time, with unit
+//! diagonal. L comes from `likeness`: similar characters add alike, where the other characters show what tells about this
+//! motion. It includes all axes. If others who stoop when walking lower the arms when waving, a stooping walker is
+//! expected to do so too. Trunk, arms and legs have a likeness each; even and odd axes are predicted separately.
 //!
-//! K = c 11ᵀ ⊗ I + L ⊗ B + I ⊗ B + I ⊗ I:
-//!
-//! - c 11ᵀ ⊗ I leaves the mean of each motion free (c is large).
-//! - L ⊗ B: similar characters add alike to similar motions. L = Σ_b Z_b Z_bᵀ / ‖Z_b‖² over all motions except the one
-//!   to be predicted, with unit mean diagonal. It includes all axes. If others who stoop when walking lower the arms
-//!   when waving, a stooping walker is expected to do so too. Each motion counts the same, however much it varies.
-//! - I ⊗ B: a character adds alike to similar motions, independently of other characters. B is the covariance of
-//!   postures of `kernels`, averaged over time, with unit diagonal.
-//! - I ⊗ I is the rest.
-//!
-//! The prediction is the conditional mean (Rasmussen & Williams 2006, eq. 2.25) given the known clips, separately for
-//! the even and the odd axes. The terms have equal weights: weights fitted on one half of the characters were as often
-//! worse as better on the other half. On 8 characters × 9 motions, with each clip left out in turn, the stance reduces
-//! the error of the complete clip from 0.1223 to 0.1188 torso lengths.
+//! On 8 characters × 9 motions, with each clip left out in turn, a stance of its own reduced the error of the complete clip from 0.1223
+//! to 0.1188 torso lengths. Learned weights of the likeness take another 0.0027 off.
 //!
 //! Limits: two motions are too few to measure similarity; they are left to `gaussian`. The cost grows with the cube of
 //! the number of clips.
 
+use super::additive::Additive;
+use super::basis::Axes;
 use super::cells::Cells;
+use super::grid::{Row, WIDTH};
 use super::kernels::Kernels;
-use rototoon_base::numeric::dense::DenseCholesky;
+use super::likeness::{self, Added, PARTS};
 
-/// c.
-const MEAN_VARIANCE: f64 = 30.0;
+/// n.
+const NOISE: f64 = 1.0;
 /// With at least this many motions the prediction is better than that of `gaussian`.
-const FEWEST_MOTIONS: usize = 3;
+pub(super) const FEWEST_MOTIONS: usize = 3;
 
 /// Predicts the stance of the target's character in its motion, the motion's mean included. Returns the coefficient of
-/// the constant cosine for each axis; the first `even` axes are even. `None` if too little is known.
-pub(super) fn predict(cells: &Cells, kernels: &Kernels, even: usize, target: (usize, usize)) -> Option<Vec<f64>> {
+/// the constant cosine for each axis. `None` if too little is known.
+pub(super) fn predict(cells: &Cells, kernels: &Kernels, axes: &Axes, target: (usize, usize)) -> Option<Vec<f64>> {
     let keep = |s: usize, m: usize| cells.known[s * cells.motions + m] && (s, m) != target;
-    from(cells, kernels, even, target, &keep)
+    from(cells, kernels, axes, target, &keep)
 }
 
 /// The mean stance of a motion over the clips that `keep` accepts; 0 if there are none.
@@ -55,7 +47,7 @@ pub(super) fn mean(cells: &Cells, motion: usize, keep: &dyn Fn(usize, usize) -> 
 pub(super) fn from(
     cells: &Cells,
     kernels: &Kernels,
-    even: usize,
+    axes: &Axes,
     target: (usize, usize),
     keep: &dyn Fn(usize, usize) -> bool,
 ) -> Option<Vec<f64>> {
@@ -66,58 +58,55 @@ pub(super) fn from(
     let means: Vec<Vec<f64>> = (0..motions).map(|m| mean(cells, m, keep)).collect();
     let known: Vec<(usize, usize)> =
         (0..cells.characters).flat_map(|s| (0..motions).map(move |m| (s, m))).filter(|&(s, m)| keep(s, m)).collect();
-    let added = |(s, m): (usize, usize)| -> Vec<f64> {
-        cells.block(s, m)[..cells.axes].iter().zip(&means[m]).map(|(a, b)| a - b).collect()
-    };
-    let likeness = likeness(cells.characters, &known, target.1, &added);
-    let mut result = means[target.1].clone();
-    for (columns, side) in [(0..even, true), (even..cells.axes, false)] {
-        let among = kernels.stances(side);
-        let covariance = |(a, b): (usize, usize), (e, f): (usize, usize)| {
-            let one = |same: bool| f64::from(u8::from(same));
-            let alike = among[b * motions + f];
-            one(b == f) * (MEAN_VARIANCE + one(a == e)) + alike * (likeness[a * cells.characters + e] + one(a == e))
-        };
-        let n = known.len();
-        let matrix: Vec<f64> = (0..n * n).map(|k| covariance(known[k / n], known[k % n])).collect();
-        let mut weighted: Vec<f64> = known.iter().flat_map(|&cell| added(cell)[columns.clone()].to_vec()).collect();
-        DenseCholesky::new(n, &matrix)?.solve(&mut weighted, columns.len());
-        for (&cell, row) in known.iter().zip(weighted.chunks_exact(columns.len().max(1))) {
-            let share = covariance(target, cell);
-            result[columns.clone()].iter_mut().zip(row).for_each(|(sum, v)| *sum += share * v);
-        }
+    let added: Vec<Vec<f64>> = known
+        .iter()
+        .map(|&(s, m)| cells.block(s, m)[..cells.axes].iter().zip(&means[m]).map(|(a, b)| a - b).collect())
+        .collect();
+    let likeness = likeness::learned(&postures(cells, axes, &known, &added), target);
+    let mut changed: Row = [0.0; WIDTH];
+    for (points, likeness) in PARTS.iter().zip(&likeness) {
+        let part = part(cells, kernels, axes.even, target, (&known, &added), likeness)?;
+        let row = axes.posture(&part);
+        points.iter().flat_map(|k| [2 * k, 2 * k + 1]).for_each(|d| changed[d] = row[d]);
     }
+    let mut result = means[target.1].clone();
+    result.iter_mut().zip(axes.coordinates(&changed)).for_each(|(sum, v)| *sum += v);
     Some(result)
 }
 
-/// L: similarity of characters in what they add to all motions except one.
-fn likeness(
-    characters: usize,
-    known: &[(usize, usize)],
-    without: usize,
-    added: &dyn Fn((usize, usize)) -> Vec<f64>,
-) -> Vec<f64> {
-    let mut sum = vec![0.0; characters * characters];
-    let mut motions: Vec<usize> = known.iter().map(|&(_, m)| m).filter(|&m| m != without).collect();
-    motions.sort_unstable();
-    motions.dedup();
-    for m in motions {
-        let of: Vec<(usize, Vec<f64>)> =
-            known.iter().filter(|cell| cell.1 == m).map(|&cell| (cell.0, added(cell))).collect();
-        let square: f64 = of.iter().flat_map(|(_, row)| row).map(|v| v * v).sum();
-        if square < 1e-18 {
-            continue;
-        }
-        for (a, left) in &of {
-            for (e, right) in &of {
-                sum[a * characters + e] += left.iter().zip(right).map(|(v, w)| v * w).sum::<f64>() / square;
-            }
-        }
+/// What the target's character adds, for one likeness of characters.
+fn part(
+    cells: &Cells,
+    kernels: &Kernels,
+    even: usize,
+    target: (usize, usize),
+    (known, added): (&[(usize, usize)], &[Vec<f64>]),
+    likeness: &[f64],
+) -> Option<Vec<f64>> {
+    let mut found = Vec::with_capacity(cells.axes);
+    for (columns, side) in [(0..even, true), (even..cells.axes, false)] {
+        let among = kernels.stances(side);
+        let process = Additive { likeness, characters: cells.characters, among: &among, rows: 1, noise: NOISE };
+        let values: Vec<f64> = added.iter().flat_map(|row| &row[columns.clone()]).copied().collect();
+        found.extend(process.predict(known, &values, columns.len(), target)?);
     }
-    let trace: f64 = (0..characters).map(|i| sum[i * characters + i]).sum();
-    let scale = if trace > 0.0 { characters as f64 / trace } else { 0.0 };
-    sum.iter_mut().for_each(|v| *v *= scale);
-    sum
+    Some(found)
+}
+
+/// What is added, as postures.
+fn postures(cells: &Cells, axes: &Axes, known: &[(usize, usize)], added: &[Vec<f64>]) -> Added {
+    let size = cells.characters * cells.motions;
+    let mut result = Added {
+        characters: cells.characters,
+        motions: cells.motions,
+        known: vec![false; size],
+        rows: vec![[0.0; WIDTH]; size],
+    };
+    for (&(s, m), row) in known.iter().zip(added) {
+        result.known[s * cells.motions + m] = true;
+        result.rows[s * cells.motions + m] = axes.posture(row);
+    }
+    result
 }
 
 #[cfg(test)]
@@ -127,6 +116,11 @@ mod tests {
     use super::*;
 
     const CHARACTERS: usize = 4;
+
+    /// Two even axes and an odd one, each a coordinate of the trunk.
+    fn axes() -> Axes {
+        Axes { vectors: [2, 3, 5].map(|at| std::array::from_fn(|d| f64::from(u8::from(d == at)))).into(), even: 2 }
+    }
 
     /// Clips without movement, with two even axes and an odd one; `added` gives what a character adds to a motion.
     fn cells(motions: usize, added: impl Fn(usize, usize) -> [f64; 3]) -> Cells {
@@ -153,7 +147,7 @@ mod tests {
     /// The prediction for character 0 in motion 0, without the motion's mean.
     fn predicted(motions: usize, apart: f64, added: impl Fn(usize, usize) -> [f64; 3]) -> [f64; 3] {
         let cells = cells(motions, added);
-        let found = predict(&cells, &kernels(motions, apart), 2, (0, 0)).unwrap();
+        let found = predict(&cells, &kernels(motions, apart), &axes(), (0, 0)).unwrap();
         let mean = cells.mean_of(0, 0);
         [0, 1, 2].map(|axis| found[axis] - mean[axis])
     }
@@ -184,7 +178,7 @@ mod tests {
     #[test]
     fn two_motions_are_too_few() {
         let cells = cells(2, |s, _| [s as f64, 0.0, 1.0]);
-        assert_eq!(predict(&cells, &kernels(2, 1.0), 2, (0, 0)), None);
+        assert_eq!(predict(&cells, &kernels(2, 1.0), &axes(), (0, 0)), None);
     }
 
     #[test]
