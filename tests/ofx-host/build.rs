@@ -19,7 +19,7 @@ fn main() {
     let mut build = cxx_build::bridge("src/bridge.rs");
     build
         .files(sources(&host.join("src")))
-        .file("src/host.cpp")
+        .files(sources(Path::new("src/host")))
         .include(openfx.join("include"))
         .include(host.join("include"))
         .include(&expat)
@@ -35,7 +35,7 @@ fn main() {
         .compile("rototoon_ofx_host");
     // The plugin looks OpenGL up in its host's process. The tests export functions of these names that record lines.
     println!("cargo::rustc-link-arg-tests=-Wl,--export-dynamic-symbol=gl*");
-    for file in ["build.rs", "src/bridge.rs", "src/host.cpp", "src/host.h"] {
+    for file in ["build.rs", "src/bridge.rs", "src/host.h", "src/host"] {
         println!("cargo::rerun-if-changed={file}");
     }
 }

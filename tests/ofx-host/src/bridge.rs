@@ -1,4 +1,4 @@
-//! The bridge to `host.cpp`.
+//! The bridge to the C++ of `host/`.
 #![allow(unsafe_code, reason = "cxx generates the calls of C++ functions and checks their signatures on both sides")]
 
 /// Converts a float to the bits of a half.

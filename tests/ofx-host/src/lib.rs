@@ -1,8 +1,9 @@
 //! An OpenFX host for tests.
 //!
-//! The official HostSupport library provides plugin cache, properties, parameters, clips and actions. `host.cpp` adds the
-//! parts that every host writes itself: images, values and keys of parameters, threads, progress, messages. The library logs
-//! every call with its status. The host keeps these lines, so that a test can refuse any unexpected error status.
+//! The official HostSupport library provides plugin cache, properties, parameters, clips and actions. The folder `host`
+//! adds the parts that every host writes itself: images, values and keys of parameters, threads, progress, messages. The
+//! library logs every call with its status. The host keeps these lines, so that a test can refuse any unexpected error
+//! status.
 //!
 //! The library has one plugin cache per process, so [`Host::open`] waits until no other test has a host.
 
@@ -133,7 +134,7 @@ pub struct Effect<'a> {
 }
 
 // SAFETY: the instance is an object of C++ that is bound to no thread: hosts make an instance on one thread, render it on
-// others and delete it on a third. The library's own state that instances share is guarded in `host.cpp`. `Effect` is not
+// others and delete it on a third. The library's own state that instances share is guarded in `host/`. `Effect` is not
 // `Sync`, so no two threads use one instance at once but through the host's own render threads.
 #[allow(unsafe_code, reason = "hosts move instances between threads, so the tests do")]
 unsafe impl Send for Effect<'_> {}
