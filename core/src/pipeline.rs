@@ -39,7 +39,7 @@ use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
 use crate::project::{Document, Inputs, output, validate, write_whole};
 use crate::render::{self, Format, OverlayOptions};
-use crate::scene::{FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use crate::snap::{SnapOptions, snap_scene};
 use crate::track::{TrackOptions, Tracker, Tracking};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -210,7 +210,8 @@ struct Rendering {
 ///
 /// # Errors
 ///
-/// [`PipelineError::Request`] if the job does not fit the document; errors of reading, encoding and writing; or
+/// [`PipelineError::Option`] if parts or frames do not fit the document; [`PipelineError::Request`] if the output does not fit
+/// the job; errors of reading, encoding and writing; or
 /// [`PipelineError::Cancelled`].
 pub fn render(
     document: &Document,
@@ -274,12 +275,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     if let Some(what) = needs_exr.filter(|_| format != Format::Exr) {
         return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for {what}", job.output)));
     }
-    let range = job.frames.clone().unwrap_or(footage.first..=footage.last);
-    if range.is_empty() || !(footage.first..=footage.last).contains(range.start()) || *range.end() > footage.last {
-        let (first, last) = (range.start(), range.end());
-        let own = format!("{} to {}", footage.first, footage.last);
-        return Err(PipelineError::Request(format!("frames {first} to {last}: expected frames of the footage, {own}")));
-    }
+    let range = frames_of(footage, job.frames.clone())?;
     let frames: Vec<(FrameNumber, PathBuf)> = match FramePattern::parse(&job.output) {
         Ok(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
         Err(PatternError::NoNumber { .. }) if range.start() == range.end() => {
@@ -299,15 +295,30 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
 }
 
 fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
-    let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::Request(error.to_string()));
+    let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::option("parts", error));
     names.iter().map(index).collect()
+}
+
+/// The frames that an option asks for, or all of the footage.
+fn frames_of(
+    footage: &Footage,
+    asked: Option<RangeInclusive<FrameNumber>>,
+) -> Result<RangeInclusive<FrameNumber>, PipelineError> {
+    let own = footage.first..=footage.last;
+    let Some(asked) = asked else { return Ok(own) };
+    if asked.is_empty() || !own.contains(asked.start()) || !own.contains(asked.end()) {
+        let ([first, last], [a, b]) = ([asked.start(), asked.end()], [own.start(), own.end()]);
+        let reason = format!("found {first} to {last}, expected frames of the footage, {a} to {b}");
+        return Err(PipelineError::option("frames", reason));
+    }
+    Ok(asked)
 }
 
 /// Exports the document as an animated SVG: its parts, and its traced strokes over them.
 ///
 /// # Errors
 ///
-/// [`PipelineError::Request`] if the field `traced` cannot be read.
+/// [`PipelineError::Field`] if the field `traced` cannot be read.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, PipelineError> {
     Ok(svg_with_strokes(&document.scene, &trace::strokes_to_export(document)?, options))
 }

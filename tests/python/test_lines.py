@@ -136,7 +136,7 @@ def test_wrong_options_are_named_and_change_nothing(film):
         for options, said in [
             ({"style": "neat"}, "unknown variant `neat`"),
             ({"sensitivity": 0}, "sensitivity: found 0"),
-            ({"frames": (2, 9)}, "frames 2 to 9: expected frames of the footage, 0 to 3"),
+            ({"frames": (2, 9)}, "frames: found 2 to 9, expected frames of the footage, 0 to 3"),
             ({"threads": -1}, "invalid value: integer `-1`"),
         ]:
             with pytest.raises(RototoonError, match=said):

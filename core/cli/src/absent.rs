@@ -42,12 +42,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let name = arguments::choice(given, "part");
     let footage = document.scene.footage.clone();
     let index = document.scene.part_index(name);
-    let index = index.map_err(|error| Failure::Other(format!("{}: {error}", from.display())))?;
+    let index = index.map_err(|error| Failure::Use(format!("{}: --part: {error}", from.display())))?;
     let Some(frames) = given.get_one::<RangeInclusive<FrameNumber>>("frames") else { return Ok(()) };
     let (first, last) = (*frames.start(), *frames.end());
     if let Some(frame) = [first, last].into_iter().find(|frame| !(footage.first..=footage.last).contains(frame)) {
         let outside = FrameError::Outside { frame, first: footage.first, last: footage.last };
-        return Err(Failure::Other(format!("{}: {outside}", from.display())));
+        return Err(Failure::Use(format!("{}: --frames: {outside}", from.display())));
     }
     let part = &mut document.scene.parts[index];
     if given.get_flag("there") {

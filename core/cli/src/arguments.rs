@@ -41,12 +41,8 @@ fn option(parameter: &'static Parameter) -> Arg {
             arg.value_name("N").default_value(default.to_string()).value_parser(value_parser!(i64).range(min..=max))
         }
         Kind::Number { default, min, max, unit } => {
-            let parse = move |text: &str| match text.parse::<f64>() {
-                Ok(value) if (min..=max).contains(&value) => Ok(value),
-                _ => Err(format!("expected a number from {min} to {max}")),
-            };
             let name = if unit.is_empty() { "NUMBER".to_owned() } else { unit.to_uppercase() };
-            arg.value_name(name).default_value(default.to_string()).value_parser(parse)
+            arg.value_name(name).default_value(default.to_string()).value_parser(within(min, max))
         }
         Kind::Flag { default } => {
             let parser = PossibleValuesParser::new(["on", "off"]).map(|text| text == "on");
@@ -56,6 +52,14 @@ fn option(parameter: &'static Parameter) -> Arg {
                 .value_parser(parser)
                 .action(ArgAction::Set)
         }
+    }
+}
+
+/// Reads a number from `min` to `max`.
+pub fn within(min: f64, max: f64) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| match text.parse::<f64>() {
+        Ok(value) if (min..=max).contains(&value) => Ok(value),
+        _ => Err(format!("expected a number from {min} to {max}")),
     }
 }
 

@@ -17,6 +17,8 @@ use std::path::{Path, PathBuf};
 
 /// Bytes of a gigabyte.
 const GB: f64 = 1e9;
+/// Most shots that a message names. A season has hundreds.
+const MOST_NAMED: usize = 20;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -30,30 +32,8 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(arguments::output("DIR", "The folder of the results; each shot gets a folder in it"))
-        .arg(number("jobs", "N", "Shots at a time; 0 for one per core").default_value("0"))
-        .arg(number("threads", "N", "Threads of each shot; 0 to share the cores among the shots").default_value("0"))
-        .arg(
-            Arg::new("memory")
-                .long("memory")
-                .value_name("GB")
-                .help("Memory of all shots together in gigabytes [default: four fifths of what is free]")
-                .value_parser(gigabytes),
-        )
-        .arg(
-            Arg::new("shots")
-                .long("shots")
-                .value_name("A-B")
-                .help("Only the shots at these places of the manifest; the first is 1")
-                .conflicts_with("shot")
-                .value_parser(render::range),
-        )
-        .arg(
-            Arg::new("shot")
-                .long("shot")
-                .value_name("NAME")
-                .help("Only the shot of this name; may be given several times")
-                .action(ArgAction::Append),
-        )
+        .args(of_machine())
+        .args(of_shots())
         .arg(
             Arg::new("report")
                 .long("report")
@@ -75,6 +55,36 @@ pub fn command() -> Command {
                 .default_value("none")
                 .value_parser(PossibleValuesParser::new(["none", "keys", "all"])),
         )
+}
+
+/// What the machine gives.
+fn of_machine() -> [Arg; 3] {
+    [
+        number("jobs", "N", "Shots at a time; 0 for one per core").default_value("0"),
+        number("threads", "N", "Threads of each shot; 0 to share the cores among the shots").default_value("0"),
+        Arg::new("memory")
+            .long("memory")
+            .value_name("GB")
+            .help("Memory of all shots together in gigabytes [default: four fifths of what is free]")
+            .value_parser(gigabytes),
+    ]
+}
+
+/// Which shots are worked on.
+fn of_shots() -> [Arg; 2] {
+    [
+        Arg::new("shots")
+            .long("shots")
+            .value_name("A-B")
+            .help("Only the shots at these places of the manifest; the first is 1")
+            .conflicts_with("shot")
+            .value_parser(render::range),
+        Arg::new("shot")
+            .long("shot")
+            .value_name("NAME")
+            .help("Only the shot of this name; may be given several times")
+            .action(ArgAction::Append),
+    ]
 }
 
 fn number(id: &'static str, name: &'static str, help: &'static str) -> Arg {
@@ -147,20 +157,28 @@ fn work(
 
 /// The places of the shots to work on.
 fn chosen(given: &ArgMatches, manifest: &Manifest) -> Result<Vec<usize>, Failure> {
-    let all = manifest.shots.len();
+    let (all, from) = (manifest.shots.len(), arguments::path(given, "manifest").display());
     if let Some(range) = given.get_one::<RangeInclusive<FrameNumber>>("shots") {
         let place = |number: FrameNumber| usize::try_from(number).ok().filter(|place| (1..=all).contains(place));
         let (Some(first), Some(last)) = (place(*range.start()), place(*range.end())) else {
             let (first, last) = (range.start(), range.end());
-            return Err(Failure::Use(format!("--shots: found {first}-{last}, expected places from 1 to {all}")));
+            return Err(Failure::Use(format!(
+                "{from}: --shots: found {first}-{last}, expected places from 1 to {all}"
+            )));
         };
         return Ok((first - 1..last).collect());
     }
     let Some(names) = given.get_many::<String>("shot") else { return Ok((0..all).collect()) };
     let at = |name: &String| {
         let found = manifest.shots.iter().position(|shot| shot.name == *name);
-        found
-            .ok_or_else(|| Failure::Use(format!("--shot: found {name:?}, expected the name of a shot of the manifest")))
+        found.ok_or_else(|| {
+            let mut known: Vec<_> =
+                manifest.shots.iter().take(MOST_NAMED).map(|shot| format!("{:?}", shot.name)).collect();
+            if all > MOST_NAMED {
+                known.push(format!("… ({all} shots)"));
+            }
+            Failure::Use(format!("{from}: --shot: found {name:?}, expected one of {}", known.join(", ")))
+        })
     };
     names.map(at).collect()
 }

@@ -46,7 +46,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         "py" => pipeline::export_natron(&document, spacing),
         "jsx" => pipeline::export_after_effects(&document, spacing),
         "fxs" => pipeline::export_silhouette(&document, spacing),
-        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })?,
+        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })
+            .map_err(|error| Failure::of(error, from))?,
     };
     write_whole(to, text.as_bytes())?;
     if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {

@@ -3,6 +3,7 @@
 use rototoon::pipeline::PipelineError;
 use rototoon::project::{LoadError, OverwritesInput, SaveError, WriteError};
 use std::io::Write;
+use std::path::Path;
 
 /// The work failed.
 pub const FAILED: u8 = 1;
@@ -44,6 +45,18 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// The failure of work on a file. It names the file, and the option that does not fit it.
+    pub fn of(error: PipelineError, from: &Path) -> Self {
+        let from = from.display();
+        match error {
+            PipelineError::Option { option, reason } => Self::Use(format!("{from}: --{option}: {reason}")),
+            PipelineError::Field(_) | PipelineError::Style(_) | PipelineError::Tween(_) | PipelineError::Fit { .. } => {
+                Self::Other(format!("{from}: {error}"))
+            }
+            other => other.into(),
+        }
+    }
+
     /// Prints the errors, one per line, and returns the exit status.
     pub fn report(self) -> u8 {
         match &self {

@@ -60,10 +60,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     check_writable(to)?;
     let options = Options { tolerance, preset };
     let text = progress::run(arguments::threads(given), |bar| {
-        pipeline::fit_curves(&curves, &options, bar).map_err(|error| match error {
-            pipeline::PipelineError::Fit { .. } => Failure::Other(format!("{}: {error}", from.display())),
-            other => other.into(),
-        })
+        pipeline::fit_curves(&curves, &options, bar).map_err(|error| Failure::of(error, from))
     })?;
     Ok(write_whole(to, text.as_bytes())?)
 }

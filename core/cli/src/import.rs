@@ -42,7 +42,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let still = given.get_one::<FrameNumber>("frame").copied().unwrap_or(footage.first);
     if !(footage.first..=footage.last).contains(&still) {
         let own = format!("{} to {}", footage.first, footage.last);
-        return Err(Failure::Use(format!("--frame {still}: expected a frame of the footage, {own}")));
+        let from = from.display();
+        return Err(Failure::Use(format!("{from}: --frame: found {still}, expected a frame of the footage, {own}")));
     }
     let format = match extension.as_str() {
         "nk" => ShapeFormat::Nuke { still },

@@ -66,7 +66,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     };
     let document = project::load(from)?;
     check_writable(output.as_ref())?;
-    progress::run(arguments::threads(given), |bar| Ok(pipeline::render(&document, project::folder(from), &job, bar)?))?;
+    progress::run(arguments::threads(given), |bar| {
+        pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
+    })?;
     Ok(())
 }
 

@@ -46,10 +46,7 @@ pub fn command() -> Command {
                 .value_name("NUMBER")
                 .help("Sensitivity to faint ink, from 0.1 to 10: with 2, ink may be half as dark as usual")
                 .default_value("1")
-                .value_parser(|text: &str| match text.parse::<f64>() {
-                    Ok(value) if (0.1..=10.0).contains(&value) => Ok(value),
-                    _ => Err("expected a number from 0.1 to 10"),
-                }),
+                .value_parser(arguments::within(0.1, 10.0)),
         )
         .args(arguments::of_stage(Stage::Run))
 }
@@ -68,7 +65,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, None, bar)?;
+        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, None, bar)
+            .map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;

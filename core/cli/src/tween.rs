@@ -12,6 +12,20 @@ use rototoon::tween::between::{Leaving, Options};
 
 /// The subcommand.
 pub fn command() -> Command {
+    Command::new("tween")
+        .about("Matches the strokes of drawings on key frames and makes the in-betweens")
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
+        .args(of_movement())
+        .arg(Arg::new("suggest").long("suggest").action(ArgAction::SetTrue).help(
+            "Says on which frame a breakdown, one more drawing, helps most: where the in-betweens differ most from the \
+             footage, or else in the middle of the span that moves most",
+        ))
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// How strokes move.
+fn of_movement() -> [Arg; 4] {
     let leaving = PossibleValuesParser::new([
         PossibleValue::new("grow").help("They shrink into their middle, or grow out of it"),
         PossibleValue::new("fade").help("They become transparent"),
@@ -26,42 +40,26 @@ pub fn command() -> Command {
         PossibleValue::new("follow").help("Strokes that lie on a tracked part move with it"),
         PossibleValue::new("ignore").help("The drawings alone decide how strokes move"),
     ]);
-    Command::new("tween")
-        .about("Matches the strokes of drawings on key frames and makes the in-betweens")
-        .arg(arguments::project())
-        .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
-        .arg(
-            Arg::new("arcs")
-                .long("arcs")
-                .value_name("NUMBER")
-                .help("Strength of arcs, from 0 (straight ways) to 1 (turns about the fixed point of a movement)")
-                .default_value("0.5")
-                .allow_negative_numbers(true)
-                .value_parser(|text: &str| match text.parse::<f64>() {
-                    Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
-                    _ => Err("expected a number from 0 to 1"),
-                }),
-        )
-        .arg(
-            Arg::new("leaving")
-                .long("leaving")
-                .help("How strokes disappear or appear that only one of two drawings has")
-                .default_value("grow")
-                .value_parser(leaving),
-        )
-        .arg(Arg::new("ends").long("ends").help("How movements begin and end").default_value("rest").value_parser(ends))
-        .arg(
-            Arg::new("captured")
-                .long("captured")
-                .help("Whether strokes follow tracked parts of the document")
-                .default_value("follow")
-                .value_parser(captured),
-        )
-        .arg(Arg::new("suggest").long("suggest").action(ArgAction::SetTrue).help(
-            "Says on which frame a breakdown, one more drawing, helps most: where the in-betweens differ most from the \
-             footage, or else in the middle of the span that moves most",
-        ))
-        .args(arguments::of_stage(Stage::Run))
+    [
+        Arg::new("arcs")
+            .long("arcs")
+            .value_name("NUMBER")
+            .help("Strength of arcs, from 0 (straight ways) to 1 (turns about the fixed point of a movement)")
+            .default_value("0.5")
+            .allow_negative_numbers(true)
+            .value_parser(arguments::within(0.0, 1.0)),
+        Arg::new("leaving")
+            .long("leaving")
+            .help("How strokes disappear or appear that only one of two drawings has")
+            .default_value("grow")
+            .value_parser(leaving),
+        Arg::new("ends").long("ends").help("How movements begin and end").default_value("rest").value_parser(ends),
+        Arg::new("captured")
+            .long("captured")
+            .help("Whether strokes follow tracked parts of the document")
+            .default_value("follow")
+            .value_parser(captured),
+    ]
 }
 
 /// Runs the subcommand.
@@ -80,10 +78,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
     let (document, suggested) = progress::run(arguments::threads(given), |bar| {
-        let shown = pipeline::tween_drawn(&mut document, &options, follow, bar).map_err(|error| match error {
-            pipeline::PipelineError::Tween(reason) => Failure::Other(format!("{}: {reason}", from.display())),
-            other => other.into(),
-        })?;
+        let shown =
+            pipeline::tween_drawn(&mut document, &options, follow, bar).map_err(|error| Failure::of(error, from))?;
         if !given.get_flag("suggest") {
             return Ok((document, None));
         }

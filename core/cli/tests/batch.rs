@@ -156,7 +156,7 @@ fn wrong_manifests_and_requests_end_before_any_work() {
     for (more, expected) in [
         (["--shots", "0-1"], "expected places from 1 to 2"),
         (["--shots", "2-9"], "expected places from 1 to 2"),
-        (["--shot", "sh9"], "expected the name of a shot"),
+        (["--shot", "sh9"], "--shot: found \"sh9\", expected one of \"sh0\", \"sh1\""),
         (["--memory", "0"], "expected a positive number"),
         (["--report", "in/sh0/project.json"], "the command reads"),
     ] {

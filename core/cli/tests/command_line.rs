@@ -225,6 +225,36 @@ fn wrong_use_ends_with_two() {
 }
 
 #[test]
+fn names_and_frames_that_do_not_fit_are_named_with_file_and_option() {
+    let cartoon = Cartoon::new();
+    let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
+    let (p, o, pictures) = (text(&project), text(&out), cartoon.path("a_%d.png"));
+    let pictures = text(&pictures);
+    for (arguments, wanted) in [
+        (vec!["render", p, "-o", pictures, "--parts", "nose"], r#"--parts: no part "nose"; the document has "square""#),
+        (
+            vec!["render", p, "-o", pictures, "--frames", "5-7"],
+            "--frames: found 5 to 7, expected frames of the footage, 0 to 6",
+        ),
+        (
+            vec!["absent", p, "-o", o, "--part", "nose", "--frames", "2"],
+            r#"--part: no part "nose"; the document has "square""#,
+        ),
+        (
+            vec!["absent", p, "-o", o, "--part", "square", "--frames", "2-9"],
+            "--frames: frame 9 is outside the footage, which has frames 0 to 6",
+        ),
+        (
+            vec!["import", p, "none.svg", "-o", o, "--frame", "8"],
+            "--frame: found 8, expected a frame of the footage, 0 to 6",
+        ),
+    ] {
+        assert_eq!(bad(&arguments, 2), format!("error: {p}: {wanted}\n"), "{arguments:?}");
+    }
+    assert_eq!(cartoon.names(), ["frames", "project.json"]);
+}
+
+#[test]
 fn pictures_are_written_for_the_given_frames() {
     let cartoon = Cartoon::new();
     let project = cartoon.keyed();

@@ -59,23 +59,23 @@ fn the_result_is_a_file_of_clips() {
 fn errors_are_reported_and_nothing_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let clips = folder.path().join("clips.json");
-    let said = |text: &str, more: &[&str]| {
+    let said = |text: &str, more: &[&str], status: i32| {
         std::fs::write(&clips, text).unwrap();
         let done = translate(folder.path(), more);
-        assert_eq!(done.status.code(), Some(1));
+        assert_eq!(done.status.code(), Some(status));
         assert!(!folder.path().join("out.json").exists());
         String::from_utf8(done.stderr).unwrap()
     };
     let good = library().to_string();
     assert!(
-        said(&good, &["--style", "nobody"])
-            .contains("clips.json: character: found \"nobody\", expected one of old, plain, shy")
+        said(&good, &["--style", "nobody"], 2)
+            .contains("clips.json: --style: found \"nobody\", expected one of old, plain, shy")
     );
     let mut short = library();
     short["clips"][4]["points"][2].as_array_mut().unwrap().pop();
-    let error = said(&short.to_string(), &["--style", "old"]);
+    let error = said(&short.to_string(), &["--style", "old"], 1);
     assert!(error.contains("clips[4] (\"old\", \"run\"), frame 2: found 16 key points, expected 17"), "{error}");
-    assert!(said("{\"rototoon_clips\": 9}", &["--style", "old"]).contains("found version 9, expected 2 or less"));
+    assert!(said("{\"rototoon_clips\": 9}", &["--style", "old"], 1).contains("found version 9, expected 2 or less"));
     assert_eq!(translate(folder.path(), &[]).status.code(), Some(2));
 }
 

@@ -96,7 +96,9 @@ fn errors_name_their_file() {
         said(&done),
         "error: shot.json: limbs[1] (r_shoulder to r_wrist).end.points[1].at: found 12, expected 0 to 8 on \"arm\"\n"
     );
-    assert_eq!(clip("shot.json", &["--frames", "0-9"]).status.code(), Some(2));
+    let late = clip("shot.json", &["--frames", "0-9"]);
+    assert_eq!(late.status.code(), Some(2));
+    assert_eq!(said(&late), "error: shot.json: --frames: found 0 to 9, expected frames of the footage, 0 to 2\n");
     assert!(!folder.join("clips.json").exists());
     write(folder, "shot.json", &figure(3));
     assert!(clip("shot.json", &[]).status.success());
@@ -104,11 +106,10 @@ fn errors_name_their_file() {
         rototoon(folder, &[&["style", "reshape", "shot.json", "clips.json", "-o", "out.json"], more].concat())
     };
     let done = reshape(&["--motion", "run"]);
-    assert!(
-        said(&done).contains("clips.json: found no clip of that character and motion, expected one of (\"a\", \"b\")")
-    );
+    let wanted = r#"clips.json: --character any, --motion "run": found no clip, expected one of ("a", "b")"#;
+    assert!(said(&done).contains(wanted), "{}", said(&done));
     let done = reshape(&["--rest", "7"]);
-    assert!(said(&done).contains("shot.json: frame 7: found no contour of \"body\""), "{}", said(&done));
+    assert!(said(&done).contains("shot.json: --rest: found frame 7 without a contour of \"body\""), "{}", said(&done));
     assert_eq!(reshape(&["--sub-keys", "-1"]).status.code(), Some(2));
     assert!(!folder.join("out.json").exists());
 }

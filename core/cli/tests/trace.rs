@@ -115,7 +115,7 @@ fn what_is_wrong_is_said_and_nothing_is_written() {
         assert!(!out.exists());
         String::from_utf8(output.stderr).unwrap()
     };
-    assert!(said(&["--frames", "2-9"], 2).contains("frames 2 to 9: expected frames of the footage, 0 to 3"));
+    assert!(said(&["--frames", "2-9"], 2).contains("--frames: found 2 to 9, expected frames of the footage, 0 to 3"));
     assert!(said(&["--style", "messy"], 2).contains("messy"));
     assert!(said(&["--sensitivity", "0"], 2).contains("expected a number from 0.1 to 10"));
     fs::remove_file(folder.path().join("f_001.png")).unwrap();

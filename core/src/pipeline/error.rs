@@ -61,9 +61,27 @@ pub enum PipelineError {
     /// Clips or limbs do not fit the request.
     #[error("{0}")]
     Style(String),
-    /// The request does not fit the document.
+    /// An option does not fit the document or the clips.
+    #[error("{option}: {reason}")]
+    Option {
+        /// The option's name.
+        option: &'static str,
+        /// What was found and what was expected.
+        reason: String,
+    },
+    /// A field of the document cannot be read.
+    #[error("{0}")]
+    Field(String),
+    /// The output cannot be written as requested.
     #[error("{0}")]
     Request(String),
+}
+
+impl PipelineError {
+    /// The error of an option.
+    pub(super) fn option(option: &'static str, reason: impl std::fmt::Display) -> Self {
+        Self::Option { option, reason: reason.to_string() }
+    }
 }
 
 /// The place of an error within its curve, and the error.

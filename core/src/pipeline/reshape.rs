@@ -134,7 +134,9 @@ fn rest_frame(parts: &[Part], asked: Option<FrameNumber>) -> Result<FrameNumber,
         return match whole(frame) {
             None => Ok(frame),
             Some(part) => {
-                Err(wrong(format!("frame {frame}: found no contour of {:?}, expected one of every part", part.name)))
+                let name = &part.name;
+                let reason = format!("found frame {frame} without a contour of {name:?}, expected one of every part");
+                Err(PipelineError::option("rest", reason))
             }
         };
     }

@@ -1,6 +1,6 @@
 //! From contours to a skeleton clip, and translation of a motion into another character's manner.
 
-use super::PipelineError;
+use super::{PipelineError, frames_of};
 use crate::project::Document;
 use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
@@ -35,24 +35,17 @@ pub struct CapturedClip {
 ///
 /// # Errors
 ///
-/// [`PipelineError::Request`] for an empty name or frames outside of the footage; [`PipelineError::Style`] for limbs
+/// [`PipelineError::Option`] for an empty name or frames outside of the footage; [`PipelineError::Style`] for limbs
 /// that cannot be used.
 pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Style(error.to_string());
     for (name, value) in [("character", &job.character), ("motion", &job.motion)] {
         if value.is_empty() {
-            return Err(PipelineError::Request(format!("{name}: found no name, expected one")));
+            return Err(PipelineError::option(name, "found no name, expected one"));
         }
     }
     let footage = &document.scene.footage;
-    let frames = job.frames.clone().unwrap_or(footage.first..=footage.last);
-    if frames.is_empty() || *frames.start() < footage.first || *frames.end() > footage.last {
-        let (own, asked) = ((footage.first, footage.last), (frames.start(), frames.end()));
-        return Err(PipelineError::Request(format!(
-            "frames {} to {}: expected frames of the footage, {} to {}",
-            asked.0, asked.1, own.0, own.1
-        )));
-    }
+    let frames = frames_of(footage, job.frames.clone())?;
     let set = document.limbs().map_err(|e| wrong(&e))?;
     let captured = capture(&set, &document.scene.parts, frames).map_err(|e| wrong(&e))?;
     let counts = captured.guessed.iter().enumerate().filter(|(_, count)| **count > 0);
@@ -66,7 +59,7 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
 ///
 /// # Errors
 ///
-/// [`PipelineError::Style`] or [`PipelineError::Cancelled`].
+/// [`PipelineError::Option`] for a name that no clip has, [`PipelineError::Style`] or [`PipelineError::Cancelled`].
 pub fn translate(
     clips: &Clips,
     request: &Request,
@@ -90,6 +83,9 @@ pub fn translate_and_judge(
     let made = style::translate_and_judge(&clips.clips, request, options, progress);
     let (made, sure) = made.map_err(|error| match error {
         StyleError::Cancelled(cancelled) => PipelineError::Cancelled(cancelled),
+        StyleError::Name { role, found, known } => {
+            PipelineError::option(role, format!("found {found:?}, expected one of {known}"))
+        }
         other => PipelineError::Style(other.to_string()),
     })?;
     Ok((Clips { clips: vec![made], fps: clips.fps }, sure))

@@ -6,7 +6,7 @@ mod tests;
 
 pub use kept::TraceMemory;
 
-use super::{PipelineError, frames};
+use super::{PipelineError, frames, frames_of};
 use crate::export::SvgStroke;
 use crate::geometry::{Point, polygon};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
@@ -39,8 +39,8 @@ const PLAIN: f64 = 2.0;
 ///
 /// # Errors
 ///
-/// [`PipelineError::Request`] for a range outside of the footage, and for fields that cannot be read; an unreadable frame;
-/// not enough memory; or [`PipelineError::Cancelled`].
+/// [`PipelineError::Option`] for a range outside of the footage, [`PipelineError::Field`] for fields that cannot be read; an
+/// unreadable frame; not enough memory; or [`PipelineError::Cancelled`].
 pub fn trace(
     document: &mut Document,
     folder: &Path,
@@ -49,14 +49,9 @@ pub fn trace(
     memory: Option<&mut TraceMemory>,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
-    let wrong = |error: &dyn std::fmt::Display| PipelineError::Request(error.to_string());
+    let wrong = |error: &dyn std::fmt::Display| PipelineError::Field(error.to_string());
     let footage = &document.scene.footage;
-    let range = range.unwrap_or(footage.first..=footage.last);
-    if range.is_empty() || *range.start() < footage.first || *range.end() > footage.last {
-        let own = format!("{} to {}", footage.first, footage.last);
-        let (first, last) = (range.start(), range.end());
-        return Err(PipelineError::Request(format!("frames {first} to {last}: expected frames of the footage, {own}")));
-    }
+    let range = frames_of(footage, range)?;
     super::memory::to_trace(footage)?;
     let drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
     let earlier = document.traced().map_err(|error| wrong(&error))?;
@@ -85,7 +80,7 @@ pub fn trace(
 
 /// The traced strokes of a document, one for each number.
 pub(super) fn strokes_to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineError> {
-    let traced = document.traced().map_err(|error| PipelineError::Request(error.to_string()))?;
+    let traced = document.traced().map_err(|error| PipelineError::Field(error.to_string()))?;
     let mut strokes: BTreeMap<usize, SvgStroke> = BTreeMap::new();
     for (frame, stroke) in
         traced.into_iter().flat_map(|drawing| drawing.strokes.into_iter().map(move |s| (drawing.frame, s)))

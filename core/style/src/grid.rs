@@ -184,14 +184,16 @@ fn check_names<'a>(clips: &'a [Clip], request: &Request) -> Result<&'a Clip, Sty
     if request.style == request.content {
         return Err(StyleError::SameCharacter { character: request.style.to_owned() });
     }
-    for character in [request.style, request.content] {
+    for (role, character) in [("style", request.style), ("content", request.content)] {
         let by_keys = character == request.style && !request.keys.is_empty();
         if !has(character) && !by_keys {
-            return Err(StyleError::Character { found: character.to_owned(), known: names(&|c| c.character.clone()) });
+            let known = names(&|c| c.character.clone());
+            return Err(StyleError::Name { role, found: character.to_owned(), known });
         }
     }
     if !clips.iter().any(|c| c.motion == request.motion) {
-        return Err(StyleError::Motion { found: request.motion.to_owned(), known: names(&|c| c.motion.clone()) });
+        let known = names(&|c| c.motion.clone());
+        return Err(StyleError::Name { role: "motion", found: request.motion.to_owned(), known });
     }
     let content = clips.iter().find(|c| c.character == request.content && c.motion == request.motion);
     let Some(content) = content else {

@@ -187,20 +187,14 @@ impl Default for Options {
 /// Why nothing was made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StyleError {
-    /// No clip has this character.
-    #[error("character: found {found:?}, expected one of {known}")]
-    Character {
+    /// No clip has this character or motion.
+    #[error("{role}: found {found:?}, expected one of {known}")]
+    Name {
+        /// What the name was given for: `style`, `content` or `motion`.
+        role: &'static str,
         /// The name that was given.
         found: String,
-        /// All names.
-        known: String,
-    },
-    /// No clip has this motion.
-    #[error("motion: found {found:?}, expected one of {known}")]
-    Motion {
-        /// The name that was given.
-        found: String,
-        /// All names.
+        /// All names of characters, or of motions.
         known: String,
     },
     /// Style and content are one.

@@ -210,7 +210,7 @@ fn what_is_wrong_with_a_request_is_named() {
     };
     assert_eq!(
         error("nobody", "run", "plain", &[]),
-        "character: found \"nobody\", expected one of bold, old, plain, proud, shy"
+        "style: found \"nobody\", expected one of bold, old, plain, proud, shy"
     );
     assert_eq!(error("old", "fly", "plain", &[]), "motion: found \"fly\", expected one of bow, run, stroll, walk");
     assert!(error("old", "run", "old", &[]).contains("expected two characters"));

@@ -1,6 +1,6 @@
 //! `rototoon style clip`: makes a skeleton clip from a document's tracked contours.
 
-use super::{name, named};
+use super::name;
 use crate::arguments;
 use crate::failure::{Failure, line};
 use crate::{project, render};
@@ -39,7 +39,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         motion: arguments::choice(given, "motion").to_owned(),
         frames: given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned(),
     };
-    let made = pipeline::clip(&document, &job).map_err(|error| named(error, from))?;
+    let made = pipeline::clip(&document, &job).map_err(|error| Failure::of(error, from))?;
     let frames = made.clips.clips.first().map_or(0, |clip| clip.postures.len());
     for (point, count) in &made.guessed {
         line("warning", &format!("{}: {point}: filled in on {count} of {frames} frames", from.display()));

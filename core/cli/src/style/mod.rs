@@ -14,7 +14,6 @@ mod translate;
 
 use crate::failure::{Failure, line};
 use clap::{Arg, ArgMatches, Command};
-use rototoon::pipeline::PipelineError;
 use rototoon::project::clips::Clips;
 use rototoon::project::library::Library;
 use std::path::Path;
@@ -42,14 +41,6 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 
 fn name(id: &'static str, help: &'static str) -> Arg {
     Arg::new(id).long(id).value_name("NAME").help(help).required(true)
-}
-
-/// Adds the name of the file to an error of clips or limbs.
-fn named(error: PipelineError, from: &Path) -> Failure {
-    match error {
-        PipelineError::Style(reason) => Failure::Other(format!("{}: {reason}", from.display())),
-        other => other.into(),
-    }
 }
 
 /// The clips of a file, or of a library. Unusable files of a library give warnings.

@@ -1,6 +1,6 @@
 //! `rototoon style reshape`: makes a drawing follow a skeleton clip.
 
-use super::{load, named};
+use super::load;
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -90,7 +90,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let chains = given.get_many::<(String, String)>("chain").into_iter().flatten().cloned().collect();
     let job = ReshapeJob { clip, fps: clips.fps, rest, over, chains, options, points: Default::default() };
     let (document, made) = progress::run(arguments::threads(given), |bar| {
-        let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| named(error, from))?;
+        let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| Failure::of(error, from))?;
         Ok((document, made))
     })?;
     for (part, given) in &made.given {
@@ -118,10 +118,14 @@ fn chosen<'a>(clips: &'a Clips, from: &Path, given: &ArgMatches) -> Result<&'a C
     match (found.next(), found.next()) {
         (Some(only), None) => Ok(only),
         (first, _) => {
-            let names: Vec<_> = clips.clips.iter().map(|c| format!("({:?}, {:?})", c.character, c.motion)).collect();
+            let known: Vec<_> = clips.clips.iter().map(|c| format!("({:?}, {:?})", c.character, c.motion)).collect();
             let count = if first.is_none() { "no clip" } else { "several clips" };
-            let (from, names) = (from.display(), names.join(", "));
-            Err(Failure::Other(format!("{from}: found {count} of that character and motion, expected one of {names}")))
+            let value = |id| given.get_one::<String>(id).map_or("any".to_owned(), |name| format!("{name:?}"));
+            let (from, known) = (from.display(), known.join(", "));
+            let (character, motion) = (value("character"), value("motion"));
+            Err(Failure::Use(format!(
+                "{from}: --character {character}, --motion {motion}: found {count}, expected one of {known}"
+            )))
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `rototoon style translate`: makes a motion in another character's style.
 
-use super::{load, name, named};
+use super::{load, name};
 use crate::failure::{Failure, line};
 use crate::{arguments, progress};
 use clap::builder::{PossibleValue, PossibleValuesParser};
@@ -75,10 +75,7 @@ fn of_method() -> [Arg; 4] {
             .help("Factor on the change that the style makes, 0 to 3 (only of the default preset)")
             .default_value("1.1")
             .allow_negative_numbers(true)
-            .value_parser(|text: &str| match text.parse::<f64>() {
-                Ok(value) if (0.0..=3.0).contains(&value) => Ok(value),
-                _ => Err("expected a number from 0 to 3"),
-            }),
+            .value_parser(arguments::within(0.0, 3.0)),
         Arg::new("rank")
             .long("rank")
             .value_name("N")
@@ -115,7 +112,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     };
     let request = Request { style: text("style"), motion: text("motion"), content: text("content"), keys: &keys };
     let (made, sure) = progress::run(arguments::threads(given), |bar| {
-        pipeline::translate_and_judge(&clips, &request, &options, bar).map_err(|error| named(error, from))
+        pipeline::translate_and_judge(&clips, &request, &options, bar).map_err(|error| Failure::of(error, from))
     })?;
     if let Some(sure) = sure {
         line("note", &format!("{}: {}", from.display(), said(&sure)));

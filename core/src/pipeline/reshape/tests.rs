@@ -330,7 +330,7 @@ fn what_is_wrong_is_named_and_changes_nothing() {
     assert_eq!(said(&none, &job(&motion)), "limbs: found none, expected at least the torso (pelvis, chest, neck)");
     assert_eq!(
         said(&document, &ReshapeJob { rest: Some(4), ..job(&motion) }),
-        "frame 4: found no contour of \"leg\", expected one of every part"
+        "rest: found frame 4 without a contour of \"leg\", expected one of every part"
     );
     let mut flat = document.clone();
     flat.scene.parts[3].keys.get_mut(&0).unwrap().fill(Point::ONE);
