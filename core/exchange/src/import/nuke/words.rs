@@ -68,7 +68,7 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
     let (mut at, mut count) = (0, 0u32);
     while at < bytes.len() {
         let start = at;
-        match bytes[at] {
+        let item = match bytes[at] {
             byte if byte.is_ascii_whitespace() || byte == b';' => {
                 at += 1;
                 continue;
@@ -86,20 +86,17 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
                 let Some((from, list)) = open.pop().filter(|_| !open.is_empty()) else {
                     return Err(wrong(text, start, "list", "found a closing brace without an opening one"));
                 };
-                add(&mut open, Item { start: from, kind: Kind::List(list) });
                 at += 1;
-            }
-            b'"' => {
-                let end = text[start + 1..].find('"').map(|length| start + 1 + length);
-                let end = end.ok_or_else(|| wrong(text, start, "word", "found no closing quotation mark"))?;
-                add(&mut open, Item { start, kind: Kind::Word(&text[start + 1..end]) });
-                at = end + 1;
+                Item { start: from, kind: Kind::List(list) }
             }
             _ => {
-                let ends = |byte: &u8| byte.is_ascii_whitespace() || b"{}\"".contains(byte);
-                at = start + bytes[start..].iter().position(ends).unwrap_or(bytes.len() - start);
-                add(&mut open, Item { start, kind: Kind::Word(&text[start..at]) });
+                let (word, end) = word(text, start)?;
+                at = end;
+                Item { start, kind: Kind::Word(word) }
             }
+        };
+        if let Some((_, list)) = open.last_mut() {
+            list.push(item);
         }
         count += 1;
         if count > MOST_NODES {
@@ -113,10 +110,15 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
     }
 }
 
-fn add<'a>(open: &mut [(usize, Vec<Item<'a>>)], item: Item<'a>) {
-    if let Some((_, list)) = open.last_mut() {
-        list.push(item);
+/// The word that begins at a byte, without its quotation marks, and the byte after it.
+fn word(text: &str, start: usize) -> Result<(&str, usize), ImportError> {
+    if let Some(quoted) = text[start..].strip_prefix('"') {
+        let length = quoted.find('"').ok_or_else(|| wrong(text, start, "word", "found no closing quotation mark"))?;
+        return Ok((&quoted[..length], start + 1 + length + 1));
     }
+    let ends = |byte: &u8| byte.is_ascii_whitespace() || b"{}\"".contains(byte);
+    let length = text.as_bytes()[start..].iter().position(ends).unwrap_or(text.len() - start);
+    Ok((&text[start..start + length], start + length))
 }
 
 #[cfg(test)]
