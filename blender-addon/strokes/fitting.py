@@ -3,6 +3,9 @@
 Blender draws such a curve as a NURBS of order 3. The curve is fitted in the plane of the drawing. Other values of the points
 (distance from the plane, radius, opacity, colour, the artist's attributes) are fitted with the same weights as the guiding points,
 so Blender blends them along the curve as they ran along the stroke. Values that cannot be blended come from the nearest point.
+
+A uniform spline has a corner where a guiding point is doubled, and each side between two corners takes two pieces. Where nothing
+but such sides is left, the stroke stays a polyline with one point at each corner: the same picture, and simpler to edit.
 """
 
 from __future__ import annotations
@@ -21,6 +24,8 @@ ORDER = 3
 MOST_STEPS, FEWEST_STEPS = 64, 12
 SMOOTH = 0.1
 """Blender draws a curve as a polyline. This share of the tolerance is the allowed distance between the two."""
+SAME = 1e-3
+"""Values of a doubled guiding point are the same if they differ by less than this share of the stroke's largest one."""
 
 
 @dataclass
@@ -29,7 +34,7 @@ class Fitted:
 
     content: st.Content
     fitted: int
-    """Number of strokes that became curves."""
+    """Number of strokes that became lighter: curves, or polylines with a point at each corner."""
     skipped: int
     """Number of chosen strokes that cannot be fitted: they are curves already, or have points that are not finite."""
     before: int
@@ -59,13 +64,14 @@ def fit(content: st.Content, wanted: np.ndarray, scale: float, tolerance: float)
     if not lighter.any():
         return None
     guides = _Guides(found, counts, lighter, carried.shape[1], offsets)
+    guides.straighten(closed[lighter] != 0, SMOOTH * tolerance)
     result = _assembled(content, chosen[lighter], guides, old, layout, scale, tolerance)
     taken = chosen[lighter]
-    return Fitted(result, len(taken), skipped, int(content.sizes[taken].sum()), int(counts[lighter].sum()))
+    return Fitted(result, len(taken), skipped, int(content.sizes[taken].sum()), int(guides.counts.sum()))
 
 
 class _Guides:
-    """The guiding points of the strokes that become curves, as arrays."""
+    """The guiding points of the strokes that become lighter, as arrays."""
 
     def __init__(self, found, counts, lighter, channels, offsets):
         rows = st.ranges(np.asarray(found.offsets)[:-1][lighter], counts[lighter])
@@ -75,6 +81,47 @@ class _Guides:
         self.nearest = np.asarray(found.nearest)[rows]
         self.source = np.repeat(np.flatnonzero(lighter), self.counts)
         self.given = offsets
+        self.straight = np.zeros(len(self.counts), bool)
+        """Strokes whose points are the corners of a polyline."""
+
+    def straighten(self, closed: np.ndarray, beside: float) -> None:
+        """Leaves one point at each corner of the strokes that are straight between their corners.
+
+        `beside` is by how many pixels the distances of a doubled point from the drawing's plane may differ.
+        """
+        kept = np.ones(len(self.points), bool)
+        ends = np.concatenate([[0], np.cumsum(self.counts)])
+        for stroke, (first, last) in enumerate(zip(ends[:-1], ends[1:])):
+            points, values = self.points[first:last], self.values[first:last]
+            limits = SAME * np.abs(values).max(0)
+            limits[0] = beside
+            pairs = _doubled(points, values, closed[stroke], limits)
+            if pairs is not None:
+                here, there = pairs
+                values[here] = (values[here] + values[there]) / 2
+                kept[first + there] = False
+                self.straight[stroke] = True
+        self.counts = np.add.reduceat(kept.astype(int), ends[:-1])
+        self.points, self.values, self.nearest, self.source = (
+            rows[kept] for rows in (self.points, self.values, self.nearest, self.source)
+        )
+
+
+def _doubled(points: np.ndarray, values: np.ndarray, closed: bool, limits: np.ndarray):
+    """The first and the second points of all corners, if a curve has nothing but corners (and its ends). Otherwise `None`.
+
+    Values that differ at a corner bend along the sides, and a polyline has only straight ones.
+    """
+    count = len(points)
+    if count % 2 or count < (6 if closed else 4):
+        return None
+    for begin in (0, 1) if closed else (1,):
+        here = np.arange(begin, count if closed else count - 1, 2)
+        there = (here + 1) % count
+        same = (np.abs(values[here] - values[there]) <= limits).all()
+        if same and (points[here] == points[there]).all():
+            return here, there
+    return None
 
 
 def _flattened(content: st.Content, old: np.ndarray, scale: float):
@@ -133,8 +180,8 @@ def _within(given: np.ndarray, guides: _Guides, values: np.ndarray) -> np.ndarra
 
 
 def _make_curves(result: st.Content, taken, guides: _Guides, tolerance: float) -> None:
-    """Makes the strokes `taken` quadratic B-splines. Strokes with one or two points stay polylines."""
-    curved = guides.counts >= ORDER
+    """Makes the strokes `taken` quadratic B-splines. Straight ones, and those with one or two points, stay polylines."""
+    curved = (guides.counts >= ORDER) & ~guides.straight
     which = taken[curved]
     result.types[which] = st.NURBS
     order, knots = result.strokes("nurbs_order").copy(), result.strokes("knots_mode").copy()

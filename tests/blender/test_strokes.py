@@ -133,6 +133,46 @@ def test_what_strokes_carry_stays(addon):
     assert found.point["vertex_color"] == pytest.approx(np.tile([0.2, 0.4, 0.6, 1.0], (n, 1)), abs=1e-4)
 
 
+def along(corners, closed=False, step=0.01):
+    """Points along straight sides, a hundredth of a unit apart."""
+    ends = np.vstack([corners, corners[:1]]) if closed else np.asarray(corners, float)
+    sides = []
+    for a, b in zip(ends[:-1], ends[1:]):
+        share = np.arange(0, 1, step / np.hypot(*(b - a)))[:, None]
+        sides.append(a + share * (b - a))
+    return np.vstack(sides + ([] if closed else [ends[-1:]]))
+
+
+def test_strokes_with_straight_sides_get_a_point_at_each_corner(addon):
+    ob = drawing_object(addon)
+    zigzag = np.array([[0, 0], [0.5, 1], [1, 0], [1.5, 1], [2, 0.2]])
+    star = np.array([[3.0 + r * np.cos(k * np.pi / 5), r * np.sin(k * np.pi / 5)] for k, r in enumerate([1, 0.5] * 5)])
+    add(addon, ob, "Lines", 1, [along(zigzag)])
+    add(addon, ob, "Lines", 1, [along(star, closed=True)], cyclic=True)
+    assert bpy.ops.rototoon.fit_strokes(tolerance=1.0) == {"FINISHED"}
+    found = content(addon, ob, "Lines", 1)
+    assert list(found.types) == [1, 1] and list(found.sizes) == [len(zigzag), len(star)]
+    assert list(found.curve["cyclic"]) == [False, True]
+    assert found.point["radius"] == pytest.approx(0.02) and found.point["opacity"] == pytest.approx(1)
+    points = evaluated(ob)
+    left = points[:, 0] < 2.1
+    for drawn, wanted, closed in ((points[left], along(zigzag), False), (points[~left], along(star, True), True)):
+        assert distance(drawn, wanted, closed) < 0.01 and distance(wanted, drawn, closed) < 0.01
+
+
+def test_what_bends_between_corners_or_changes_its_width_there_is_a_curve(addon):
+    ob = drawing_object(addon)
+    zigzag = along(np.array([[0, 0], [0.5, 1], [1, 0], [1.5, 1], [2, 0.2]]))
+    bulge = 0.01 + 0.04 * np.sin(np.linspace(0, 9, len(zigzag))) ** 2
+    add(addon, ob, "Lines", 1, [zigzag], radius=bulge.astype(np.float32))
+    turn = np.linspace(0, np.pi, 200)
+    cap = np.stack([4 + np.cos(turn), np.sin(turn)], 1)
+    add(addon, ob, "Lines", 2, [np.vstack([cap, along(np.array([[3, 0], [3, -1], [5, -1], [5, 0]]))[1:-1]])], cyclic=True)
+    assert bpy.ops.rototoon.fit_strokes(tolerance=1.0, frames="ALL") == {"FINISHED"}
+    for frame in (1, 2):
+        assert list(content(addon, ob, "Lines", frame).types) == [3]
+
+
 def test_strokes_that_cannot_be_fitted_stay(addon):
     ob = drawing_object(addon)
     shapes = [wave(50)[:1], wave(50)[:2], np.full((20, 2), 0.5), wave(200), wave(200) + 1]
