@@ -305,7 +305,7 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
     points = np.concatenate([stroke.points for stroke in strokes]) if strokes else np.zeros((0, 2))
     total, count = len(points), len(strokes)
     places = mapping.to_layer(points) if total else np.zeros((0, 3))
-    for name in {"radius", "opacity", *names}:
+    for name in dict.fromkeys(("radius", "opacity", *names)):
         rows.values[name] = gp.blank(name, total if gp.TYPES[name][1] == "POINT" else count)
     rows.values["position"] = places.astype(np.float32)
     rows.values["material_index"] = gp.blank("material_index", count)
@@ -326,6 +326,13 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
     if not count:
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
+    _dress(rows, frame, strokes, shown, names, materials)
+    rows.values[gp.LOOK] = dr.look_sums(_content(rows))
+    return rows
+
+
+def _dress(rows: gp.Rows, frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials) -> None:
+    """Gives strokes the look of the drawings around the frame, and those that have none a material of their ink."""
     starts = np.concatenate([[0], np.cumsum(rows.sizes)])
     for i, stroke in enumerate(strokes):
         where = rows.values[gp.ALONG][starts[i] : starts[i + 1]] = dr.shares(stroke.points)
@@ -340,8 +347,6 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
                 rows.values[name][starts[i] : starts[i + 1]] = looks.of_points(found, name, where)
             elif name != "cyclic":
                 rows.values[name][i] = looks.of_stroke(found[0], name)
-    rows.values[gp.LOOK] = dr.look_sums(_content(rows))
-    return rows
 
 
 def _content(rows: gp.Rows) -> st.Content:

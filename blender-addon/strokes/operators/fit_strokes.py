@@ -111,7 +111,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         return scale, self.tolerance
 
     def finish(self, context, work) -> str:
-        guard.need_open(gp.find_layer(self._ob, name) for name in {name for name, *_ in self._done})
+        guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
         for name, number, fitted in self._done:
             st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
         self._ob.data.update_tag()

@@ -85,7 +85,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
-        guard.need_open(gp.find_layer(self._ob, name) for name in {cut.layer for cut in self._cuts if cut.changed})
+        guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
         drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
