@@ -6,7 +6,7 @@
 builds the program and the environments and runs this script. To run it by hand, with NumPy, SciPy and cu2qu, and Node.js
 with fit-curve and paper:
 
-    python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE] [--sweep]
+    python3 tests/bench_fit.py --own target/release/bench-fit [--node FOLDER] [--tolerance 1] [--svg FILE] [--sweep [--outline NAME]]
 
 --node is the folder whose node_modules contains fit-curve and paper. Without it these are left out, and so is cu2qu, whose
 input are the cubics of fit-curve.
@@ -24,7 +24,8 @@ Each method is measured with the fewest pieces with which its true error keeps t
   which a join is smooth, the fewest cubics are used.
 
 --sweep prints one table instead: the pieces of each method on other outlines (swept in bench_fit_outlines.py) at tolerances
-from 0.25 to 5 px. On points rounded to pixels, Rototoon takes a tolerance below 1 px for the line before rounding. Its bound
+from 0.25 to 5 px, and in brackets the pieces as drawn: neighbours on one straight line count as one. The two counts are each
+method's fewest, so they may come from two settings. On points rounded to pixels, Rototoon takes a tolerance below 1 px for the line before rounding. Its bound
 is then the tolerance plus half a pixel, at most 1 px. The others get the same bound.
 
 The true error is measured in the same way for all. Each curve is sampled every hundredth of a pixel. The error is the
@@ -51,6 +52,7 @@ from bench_fit_outlines import outlines, swept
 SPACING = 0.01
 BISECTIONS = 24
 SWEPT = (0.25, 0.5, 1.0, 2.0, 3.0, 5.0)
+STRAIGHT = 1e-3
 
 
 def quadratics_of(guides, closed):
@@ -63,6 +65,35 @@ def quadratics_of(guides, closed):
         return np.stack([g[:1], (g[:1] + g[-1:]) / 2, g[-1:]], axis=1)
     joints = np.vstack([g[:1], (g[1:-2] + g[2:-1]) / 2, g[-1:]])
     return np.stack([joints[:-1], g[1:-1], joints[1:]], axis=1)
+
+
+def straight(control):
+    """Whether control points run along their chord in its direction, at most STRAIGHT pixels beside it."""
+    chord = control[-1] - control[0]
+    length = np.hypot(*chord)
+    if length < STRAIGHT:
+        return False
+    along = (control - control[0]) @ chord / length
+    beside = (control - control[0]) @ np.array([-chord[1], chord[0]]) / length
+    return np.abs(beside).max() <= STRAIGHT and np.diff(along).min() >= -STRAIGHT
+
+
+def drawn(beziers, closed):
+    """The number of pieces as drawn: neighbouring pieces on one straight line count as one.
+
+    It is the same rule for pieces of any degree. A run of pieces is one line if all their control points are on its chord.
+    """
+    pieces = [np.asarray(control, float) for control in beziers]
+    runs = pieces[:1]
+    for control in pieces[1:]:
+        joined = np.vstack([runs[-1], control])
+        if straight(joined):
+            runs[-1] = joined
+        else:
+            runs.append(control)
+    # The last run of a closed curve may go on in the first one.
+    around = closed and len(runs) > 1 and straight(np.vstack([runs[-1], runs[0]]))
+    return len(runs) - around
 
 
 def sampled(beziers):
@@ -126,6 +157,7 @@ def spline_beziers(tck):
 
 
 def fitpack(outline, tolerance):
+    """The fewest pieces, the times of the search and of one call, and the fewest pieces as drawn."""
     points, closed = outline["points"], outline["closed"]
     data = np.vstack([points, points[:1]]) if closed else points
     # FITPACK refuses repeated points.
@@ -136,7 +168,7 @@ def fitpack(outline, tolerance):
         return spline_beziers(tck)
 
     start = time.perf_counter()
-    low, high, best = 0.0, len(points) * tolerance**2, None
+    low, high, best, lines = 0.0, len(points) * tolerance**2, None, np.inf
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         before = time.perf_counter()
@@ -144,13 +176,14 @@ def fitpack(outline, tolerance):
         one = time.perf_counter() - before
         if true_error_quick(pieces, points, closed) <= tolerance:
             low = middle
+            lines = min(lines, drawn(pieces, closed))
             if best is None or len(pieces) <= len(best[0]):
                 best = (pieces, one)
         else:
             high = middle
     whole = time.perf_counter() - start
     pieces, one = best
-    return pieces, 1e3 * whole, 1e3 * one
+    return pieces, 1e3 * whole, 1e3 * one, lines
 
 
 def true_error_quick(pieces, points, closed):
@@ -173,17 +206,21 @@ def node(folder, method, outline, tolerances, repeats=5):
 
 
 def searched(outline, tolerance, run, values=90):
-    """Finds the fewest pieces over many values of a method's own tolerance, then measures the time of the best one."""
+    """Finds the fewest pieces over many values of a method's own tolerance, then measures the time of the best one.
+
+    Returns the pieces, the time, and the fewest pieces as drawn.
+    """
     ladder = tolerance * np.geomspace(*getattr(run, "range", (0.05, 6.0)), values)
-    best = None
+    best, lines = None, np.inf
     for parameter, pieces in zip(ladder, run(ladder, 1)):
         if len(pieces[0]) and true_error_quick(pieces[0], outline["points"], outline["closed"]) <= tolerance:
+            lines = min(lines, drawn(pieces[0], outline["closed"]))
             if best is None or len(pieces[0]) < len(best[1]):
                 best = (parameter, pieces[0])
     if best is None:
         return None
     pieces, ms = run([best[0]], 5)[0]
-    return pieces, ms
+    return pieces, ms, lines
 
 
 def cubic_method(folder, method):
@@ -232,7 +269,10 @@ def through_cu2qu(folder):
 
 
 def sweep(given):
-    """Prints the pieces of each method at each tolerance, and then where a quadratic peer needs fewer."""
+    """Prints the pieces of each method at each tolerance, and then where a quadratic peer needs fewer.
+
+    In brackets are the pieces as drawn.
+    """
     peers = {"kurbo, cubic": kurbo(given.own)}
     if given.node:
         peers |= {"paper.js, cubic": cubic_method(given.node, "paper"), "fit-curve, cubic": cubic_method(given.node, "fit-curve")}
@@ -241,6 +281,8 @@ def sweep(given):
     print(f"| outline | px | {' | '.join(names)} |\n| --- | ---: |{' ---: |' * len(names)}")
     beaten = []
     for outline in swept():
+        if given.outline and outline["name"] not in given.outline:
+            continue
         rounded = np.all(np.abs(outline["points"] - np.floor(outline["points"]) - 0.5) < 1e-9)
         for tolerance in SWEPT:
             bound = max(tolerance, min(tolerance + 0.5, 1.0)) if rounded else tolerance
@@ -249,14 +291,20 @@ def sweep(given):
             if error > said + 1e-3 or said > bound + 1e-9:
                 sys.exit(f"{outline['name']}, {tolerance} px: found the error {error}, said {said}, expected at most {bound}")
             corners = len(asked(given.own, outline, str(tolerance), "--rounds", "1")[0]["corners"])
-            row = {"Rototoon": len(pieces), "corners": corners, "FITPACK": len(fitpack(outline, bound)[0])}
+            row = {"Rototoon": (len(pieces), drawn(pieces, outline["closed"])), "corners": corners}
+            found = fitpack(outline, bound)
+            row["FITPACK"] = len(found[0]), found[3]
             for name, method in peers.items():
                 found = searched(outline, bound, method(outline), 8 if name.startswith("kurbo") else 24)
-                row[name] = len(found[0]) if found else "–"
-            quadratic = [row[name] for name in ("FITPACK", "cu2qu") if isinstance(row.get(name), int)]
-            if quadratic and min(quadratic) < len(pieces):
-                beaten.append(f"{outline['name']} at {tolerance} px: {len(pieces)} pieces, a quadratic peer {min(quadratic)}")
-            print(f"| {outline['name']} | {tolerance:g} | {' | '.join(str(row[name]) for name in names)} |", flush=True)
+                row[name] = (len(found[0]), found[2]) if found else "–"
+            quadratic = [row[name] for name in ("FITPACK", "cu2qu") if isinstance(row.get(name), tuple)]
+            for count, what in ((0, "pieces"), (1, "pieces as drawn")):
+                fewest = min((peer[count] for peer in quadratic), default=np.inf)
+                if fewest < row["Rototoon"][count]:
+                    place = f"{outline['name']} at {tolerance} px"
+                    beaten.append(f"{place}: {row['Rototoon'][count]} {what}, a quadratic peer {fewest}")
+            cells = ("{} ({})".format(*row[name]) if isinstance(row[name], tuple) else str(row[name]) for name in names)
+            print(f"| {outline['name']} | {tolerance:g} | {' | '.join(cells)} |", flush=True)
     for line in beaten:
         print(f"fewer pieces elsewhere: {line}")
 
@@ -288,6 +336,7 @@ def main():
     parser.add_argument("--tolerance", type=float, default=1.0, help="largest distance between line and curve, in pixels")
     parser.add_argument("--svg", help="SVG file for a picture of Rototoon's curves")
     parser.add_argument("--sweep", action="store_true", help="tolerances from 0.25 to 5 px on other outlines instead")
+    parser.add_argument("--outline", action="append", help="only this outline of the sweep; may be given several times")
     given = parser.parse_args()
     if given.sweep:
         return sweep(given)
@@ -302,7 +351,7 @@ def main():
         if error > said + 1e-6:
             sys.exit(f"{outline['name']}: found the true error {error}, expected at most the reported {said}")
         rows.append(("Rototoon", pieces, f"{ms:.1f}"))
-        pieces, whole, one = fitpack(outline, given.tolerance)
+        pieces, whole, one, _ = fitpack(outline, given.tolerance)
         rows.append(("SciPy FITPACK", pieces, f"{whole:.0f} (one call {one:.1f})"))
         peers = [("kurbo simplify, cubic", kurbo(given.own))]
         if given.node:
