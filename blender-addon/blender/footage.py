@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from .errors import Problem
 
@@ -203,11 +203,6 @@ def first_frame(source: Source, sequence: Sequence, scene_start: int) -> int:
         return source.frame_of_first
     number = sequence.picked if source.timed_number is None else source.timed_number
     return source.frame_of_first + sequence.first - number
-
-
-def trimmed(sequence: Sequence, limit: int) -> Sequence:
-    """The first `limit` pictures."""
-    return replace(sequence, last=min(sequence.last, sequence.first + max(limit, 1) - 1))
 
 
 def relative(path: str, blend: str) -> str:

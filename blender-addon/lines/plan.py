@@ -165,11 +165,6 @@ def _content(layer: dr.Layer, frame: int) -> st.Content:
     return layer.keys.get(frame) or layer.made.get(frame) or dr.EMPTY
 
 
-def content_of(layer: dr.Layer, frame: int) -> st.Content:
-    """The content of a drawing that is followed."""
-    return _content(layer, frame)
-
-
 def _footage(ob, pattern: str) -> dict[str, Any]:
     settings = ob.rototoon
     return {

@@ -75,16 +75,6 @@ impl Sequence {
         results.into_iter().collect()
     }
 
-    /// Decodes frames in parallel into the cache: from the start of the list, as many as the cache can keep. Errors are
-    /// not reported; a caller gets them when it reads the frame.
-    pub fn prefetch(&self, frames: &[FrameNumber]) {
-        let bytes = (self.footage.width * self.footage.height * size_of::<Colour>()).max(1);
-        let most = self.locked().most / bytes;
-        frames[..frames.len().min(most)].par_iter().for_each(|&frame| {
-            let _ = self.picture(frame);
-        });
-    }
-
     /// Empties the cache, because files may have changed.
     pub fn forget(&self) {
         let mut kept = self.locked();
@@ -237,19 +227,6 @@ mod tests {
         sequence.forget();
         assert_eq!(held(&sequence), [0; 0]);
         assert!(matches!(sequence.picture(3), Err(FrameError::Missing { frame: 3, .. })));
-    }
-
-    #[test]
-    fn prefetch_stops_at_the_limit_of_the_cache() {
-        let (folder, footage) = footage();
-        let sequence = Sequence::keeping(&footage, folder.path(), 2 * BYTES).unwrap();
-        sequence.prefetch(&[4, 9, 2, 3]);
-        assert_eq!(held(&sequence), [4]);
-        sequence.prefetch(&[2, 3, 5]);
-        assert_eq!(held(&sequence), [2, 3]);
-        let none = Sequence::keeping(&footage, folder.path(), 0).unwrap();
-        none.prefetch(&[1, 2]);
-        assert_eq!(held(&none), [0; 0]);
     }
 
     #[test]

@@ -81,11 +81,6 @@ impl SparseCholesky {
             MemStack::new(&mut self.scratch),
         );
     }
-
-    /// Number of values kept for the factor.
-    pub fn factor_len(&self) -> usize {
-        self.factor.len()
-    }
 }
 
 fn scratch_for(symbolic: &SymbolicCholesky<usize>, right_hand_sides: usize) -> MemBuffer {

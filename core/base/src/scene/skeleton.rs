@@ -45,9 +45,6 @@ pub const MIRROR: [usize; COUNT] = [0, 1, 2, 3, 4, 8, 9, 10, 5, 6, 7, 14, 15, 16
 /// Hip, knee and ankle of both legs.
 pub const LEGS: [[usize; 3]; 2] = [[11, 12, 13], [14, 15, 16]];
 
-/// Shoulders and hips. The two key points after each belong to the same arm or leg.
-pub const GIRDLES: [usize; 4] = [5, 8, 11, 14];
-
 /// Length of the torso: pelvis to chest to neck.
 pub fn torso(posture: &Posture) -> f64 {
     posture[0].distance(posture[1]) + posture[1].distance(posture[2])
