@@ -33,12 +33,17 @@ pub fn command() -> Command {
                 .allow_negative_numbers(true)
                 .value_parser(tolerance),
         )
-        .arg(Arg::new("fit_preset").long("preset").help("The method that fits").default_value("rototoon").value_parser(
-            PossibleValuesParser::new([
-                PossibleValue::new("rototoon").help("Fewest guiding points"),
-                PossibleValue::new("yang1986").help("Yang et al. 1986"),
-            ]),
-        ))
+        .arg(
+            Arg::new("fit_preset")
+                .long("preset")
+                .value_name("preset")
+                .help("The method that fits")
+                .default_value("rototoon")
+                .value_parser(PossibleValuesParser::new([
+                    PossibleValue::new("rototoon").help("Fewest guiding points"),
+                    PossibleValue::new("yang1986").help("Yang et al. 1986"),
+                ])),
+        )
         .args(arguments::of_stage(Stage::Run))
 }
 

@@ -36,6 +36,7 @@ pub fn command() -> Command {
         .arg(
             Arg::new("line_style")
                 .long("style")
+                .value_name("style")
                 .help("The kind of drawing")
                 .default_value("auto")
                 .value_parser(styles),

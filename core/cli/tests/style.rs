@@ -187,6 +187,17 @@ fn processes_that_add_at_the_same_time_lose_nothing() {
 }
 
 #[test]
+fn a_library_that_is_not_there_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let none = folder.path().join("shelv");
+    let listed = rototoon(&["style", "library", "list", none.to_str().unwrap()]);
+    let said = String::from_utf8_lossy(&listed.stderr).into_owned();
+    assert_eq!(listed.status.code(), Some(1), "{said}");
+    assert_eq!(said, format!("error: {}: found no folder, expected that of a library\n", none.display()));
+    assert!(!none.exists());
+}
+
+#[test]
 fn a_library_of_a_later_version_is_left_alone_and_a_damaged_index_is_kept() {
     let folder = tempfile::tempdir().unwrap();
     let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));

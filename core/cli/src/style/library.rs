@@ -45,7 +45,12 @@ pub fn command() -> Command {
 /// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let Some((what, given)) = given.subcommand() else { return Err(Failure::Use("expected add or list".into())) };
-    let mut library = Library::open(arguments::path(given, "folder"));
+    let folder = arguments::path(given, "folder");
+    // Only `add` makes a library. A folder that is not there is most likely a slip of the pen.
+    if what == "list" && !folder.is_dir() {
+        return Err(Failure::Other(format!("{}: found no folder, expected that of a library", folder.display())));
+    }
+    let mut library = Library::open(folder);
     library.troubles().iter().for_each(|trouble| line("warning", &trouble.to_string()));
     if what == "add" {
         let from = arguments::path(given, "clips");

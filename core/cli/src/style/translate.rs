@@ -65,6 +65,7 @@ fn of_method() -> [Arg; 4] {
     [
         Arg::new("style_preset")
             .long("preset")
+            .value_name("preset")
             .help("The method that translates")
             .default_value("rototoon")
             .value_parser(PossibleValuesParser::new(presets)),
