@@ -31,9 +31,10 @@ def _saving(path: str = "", *_args) -> None:
 
 @persistent
 def _saved(path: str = "", *_args) -> None:
-    """Sets footage paths back after a copy was saved: the open file is still the old one."""
-    if path and bpy.data.filepath and os.path.abspath(path) != os.path.abspath(bpy.data.filepath):
-        _rebase(path, bpy.data.filepath)
+    """Sets footage paths back after a copy was saved, or nothing at all: the open file is still the old one, or has no place yet."""
+    open_file = bpy.data.filepath
+    if path and not (open_file and os.path.abspath(path) == os.path.abspath(open_file)):
+        _rebase(path, open_file)
 
 
 def _rebase(old: str, new: str) -> None:
@@ -90,6 +91,7 @@ _HOOKS = (
     ("blend_import_post", _imported),
     ("save_pre", _saving),
     ("save_post", _saved),
+    ("save_post_fail", _saved),
 )
 
 

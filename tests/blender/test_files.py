@@ -202,6 +202,26 @@ def test_saved_copy_leaves_the_open_file_right(addon, fake, tmp_path):
     bpy.ops.rototoon.track()
 
 
+def test_a_copy_of_a_file_without_a_place_leaves_the_footage(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    before = ob.rototoon.pattern
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "copy.blend"), copy=True)
+    assert (bpy.data.filepath, ob.rototoon.pattern) == ("", before)
+    bpy.ops.rototoon.track()
+
+
+@pytest.mark.parametrize("saved", [False, True])
+def test_a_file_that_cannot_be_saved_keeps_its_footage(addon, fake, tmp_path, saved):
+    ob = shots.two_keys(addon, tmp_path)
+    if saved:
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    before = ob.rototoon.pattern
+    with pytest.raises(RuntimeError, match="Cannot open file"):
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "no/such/shot.blend"))
+    assert ob.rototoon.pattern == before
+    bpy.ops.rototoon.track()
+
+
 def test_import_works_in_every_mode(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot.json"))
