@@ -106,6 +106,8 @@ struct Work<'a> {
     record: Record,
     /// Takes the steps; started for the first one that is not done.
     program: Option<Program>,
+    /// Names of the steps that this run did.
+    did: Vec<&'static str>,
 }
 
 /// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
@@ -116,7 +118,7 @@ struct Work<'a> {
 /// The record cannot be read or written; the batch was stopped.
 pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
     let (record, aside) = Record::read(folder)?;
-    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None };
+    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, did: Vec::new() };
     let result = work.steps();
     work.program = None;
     work.record.failure = match result {
@@ -155,7 +157,7 @@ impl Work<'_> {
                 document = self.folder.join(output);
             }
         }
-        self.record.steps.truncate(self.shot.steps.len());
+        self.forget()?;
         // Its memory is free from here on.
         self.program = None;
         self.find(&document, &frames)
@@ -184,7 +186,7 @@ impl Work<'_> {
     }
 
     fn step(&mut self, index: usize, step: &Step, document: &Path, reads: &str) -> Result<(), ShotError> {
-        if self.is_done(index, reads) {
+        if self.settle(index, reads) {
             self.tell(step, StepOutcome::Unchanged, None);
             return Ok(());
         }
@@ -204,11 +206,14 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Whether a step was done with the same input, and its files are as they were written.
-    fn is_done(&self, index: usize, reads: &str) -> bool {
+    /// Whether a step was done with the same input, and its files are as they were written. The manifest may have been edited
+    /// since: the record of the step then moves to its present place.
+    fn settle(&mut self, index: usize, reads: &str) -> bool {
         let own = |name: &String| self.record.files.get(name).is_some_and(|hash| self.has(name, hash));
-        let done = self.record.steps.get(index).filter(|done| done.reads == reads);
-        done.is_some_and(|done| done.outputs.iter().all(own))
+        let is_done = |done: &&Done| done.reads == reads && done.outputs.iter().all(own);
+        let Some(at) = self.record.steps.iter().skip(index).position(|done| is_done(&done)) else { return false };
+        self.record.steps[index..=index + at].rotate_right(1);
+        true
     }
 
     /// Whether a file of the folder has a hash.
@@ -264,26 +269,45 @@ impl Work<'_> {
             pending.insert(new[NEW.len()..].to_owned(), hash);
         }
         let outputs: Vec<String> = pending.keys().cloned().collect();
-        let before = self.record.steps.get(index).map(|done| done.outputs.clone()).unwrap_or_default();
         self.record.pending = pending;
         let done = Done {
             step: step.name().into(),
             reads: reads.into(),
-            outputs: outputs.clone(),
+            outputs,
             seconds: ended.seconds,
             processor_seconds: ended.processor_seconds,
             peak_bytes: ended.peak_bytes,
             kept_bytes: ended.kept_bytes,
             messages: ended.messages.clone(),
         };
-        // Later steps stay: if they read what has changed, their hashes say so.
-        match self.record.steps.get_mut(index) {
-            Some(place) => *place = done,
-            None => self.record.steps.push(done),
-        }
+        self.did.push(step.name());
+        let before = self.enter(index, done);
         self.record.write(&self.folder)?;
         self.place()?;
-        self.remove_old(before.iter().filter(|name| !outputs.contains(name)))
+        self.remove_old(&before)
+    }
+
+    /// Puts a step into its place in the record. Returns the files of the earlier run of this step.
+    fn enter(&mut self, index: usize, done: Done) -> Vec<String> {
+        // Later steps stay: if they read what has changed, their hashes say so. Files tell which one is the same step.
+        let same = |old: &Done| {
+            if done.outputs.is_empty() {
+                old.step == done.step
+            } else {
+                old.outputs.iter().any(|name| done.outputs.contains(name))
+            }
+        };
+        let before = self.record.steps.iter().skip(index).position(same).map(|at| self.record.steps.remove(index + at));
+        self.record.steps.insert(index, done);
+        before.map(|old| old.outputs).unwrap_or_default()
+    }
+
+    /// Forgets the steps that the manifest no longer has. Their files stay, but not those of a step that now writes others.
+    fn forget(&mut self) -> Result<(), ShotError> {
+        let old = self.record.steps.split_off(self.shot.steps.len().min(self.record.steps.len()));
+        let renamed = old.into_iter().filter(|old| self.did.contains(&old.step.as_str()));
+        let names: Vec<String> = renamed.flat_map(|old| old.outputs).collect();
+        if names.is_empty() { Ok(()) } else { self.remove_old(&names) }
     }
 
     /// Gives pending files their names. A file that is there must be one of the batch.
@@ -311,9 +335,12 @@ impl Work<'_> {
         Ok(self.record.write(&self.folder)?)
     }
 
-    /// Removes files of an earlier run that the step no longer writes, if nobody changed them.
-    fn remove_old<'b>(&mut self, names: impl Iterator<Item = &'b String>) -> Result<(), ShotError> {
+    /// Removes files of an earlier run that no step writes any more, if nobody changed them.
+    fn remove_old(&mut self, names: &[String]) -> Result<(), ShotError> {
         for name in names {
+            if self.record.steps.iter().any(|done| done.outputs.contains(name)) {
+                continue;
+            }
             let Some(hash) = self.record.files.remove(name) else { continue };
             if self.has(name, &hash) {
                 let path = self.folder.join(name);

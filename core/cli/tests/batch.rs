@@ -80,6 +80,37 @@ fn only_what_changed_is_done_again() {
 }
 
 #[test]
+fn steps_may_be_inserted_moved_and_taken_out() {
+    let season = Season::new(1);
+    let names = |season: &Season| season.results().into_keys().collect::<Vec<_>>();
+    let run = |steps: &Value| {
+        season.manifest(steps, 1);
+        season.clear_report();
+        season.good(&[]);
+        let events = season.events("step");
+        let done = events.iter().filter(|event| event["outcome"] == "done");
+        done.map(|event| event["step"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    season.good(&[]);
+    let before = season.results();
+    let [track, snap, render, export] = [1, 2, 3, 4].map(|k| steps()[k].clone());
+    // The same steps in another order, and one more: nothing else is done again, and no file is lost.
+    let ids = json!({"do": "render", "what": "ids", "to": "ids_%03d.exr"});
+    assert_eq!(run(&json!([track, ids, snap, export, render])), ["render"]);
+    assert!(before.iter().all(|(name, bytes)| season.results().get(name) == Some(bytes)));
+    // Two steps change places, and both are done anew.
+    let (mut other_render, mut other_export) = (render.clone(), export.clone());
+    other_render["parts"] = json!(["square"]);
+    other_export["motion"] = json!("linear");
+    assert_eq!(run(&json!([track, ids, snap, other_render, other_export])), ["render", "export"]);
+    assert!(before.keys().all(|name| names(&season).contains(name)), "{:?}", names(&season));
+    // What a step wrote stays when the step is taken out, and is the batch's own when it comes back.
+    assert!(run(&json!([track, snap])).is_empty());
+    assert!(before.keys().all(|name| names(&season).contains(name)), "{:?}", names(&season));
+    assert_eq!(run(&json!([render, export])).len(), 2, "they read another document now");
+}
+
+#[test]
 fn files_of_others_are_never_replaced() {
     let season = Season::new(2);
     fs::create_dir_all(season.path("out/sh0")).unwrap();
