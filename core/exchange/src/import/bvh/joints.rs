@@ -4,8 +4,11 @@
 //! few customary prefixes (`joint_`, `Bip01`, `DEF-`); the side is a word or letter at either end (`LeftArm`, `l_arm`, `arm.L`,
 //! `Arm_L`, `lShldr`). What is left is looked up in a list for each key point, first come first served: programs agree about words
 //! but not about where they put them. A *shoulder* is the joint of the upper arm in one file and the collar bone in another; it
-//! counts only where nothing is called *arm* or *upper arm*. The lists serve the names of Biovision and CMU files, Mixamo,
-//! MotionBuilder, LAFAN, 3ds Max Biped, Poser and Daz, Unreal, SMPL, Blender's Rigify, and the Bandai Namco research data.
+//! counts only where nothing is called *arm* or *upper arm*. A *foot* is the ankle in one file and the ball of the foot in another,
+//! a *hand* the wrist or the knuckles; they count only where nothing is called *ankle* or *wrist*. The lists serve the names of
+//! Biovision and CMU files, Mixamo, MotionBuilder, LAFAN, 3ds Max Biped, Poser and Daz, Unreal, Unity, Valve, SMPL, MakeHuman,
+//! VRoid, Character Creator, Motive, Kinect, Blender's Rigify, and the Bandai Namco research data. If names do not tell all key
+//! points, they are read once more without the words with which most of them begin (`Robot_Hips`).
 //!
 //! Spines have any number of joints, so the chest is found by place: the joint between pelvis and neck that is nearest to the
 //! template's share of the way, or that share itself where none is near. The top of the head is the end of the head's chain; a head
@@ -22,22 +25,31 @@ use std::collections::BTreeMap;
 
 /// What joints are called that limbs hang on: key point without its side, names of such joints.
 const LIMBS: [(&str, &[&str]); 6] = [
-    ("shoulder", &["arm", "upperarm", "uparm", "shldr", "shldrbend", "shoulderjoint", "shoulder"]),
-    ("elbow", &["forearm", "lowerarm", "lowarm", "forearmbend", "elbow", "elbowjoint"]),
-    ("wrist", &["hand", "wrist", "wristjoint"]),
-    ("hip", &["upleg", "upperleg", "thigh", "thighbend", "hip", "hipjoint", "buttock"]),
-    ("knee", &["leg", "lowerleg", "lowleg", "shin", "calf", "knee", "kneejoint"]),
-    ("ankle", &["foot", "ankle", "anklejoint"]),
+    (
+        "shoulder",
+        &["arm", "upperarm", "upperarm01", "uparm", "uarm", "shldr", "shldrbend", "shoulderjoint", "shoulder"],
+    ),
+    ("elbow", &["forearm", "lowerarm", "lowerarm01", "lowarm", "farm", "forearmbend", "elbow", "elbowjoint"]),
+    ("wrist", &["wrist", "wristjoint", "hand"]),
+    ("hip", &["upleg", "upperleg", "upperleg01", "thigh", "thighbend", "hip", "hipjoint", "buttock"]),
+    ("knee", &["leg", "lowerleg", "lowerleg01", "lowleg", "shin", "calf", "knee", "kneejoint"]),
+    ("ankle", &["ankle", "anklejoint", "foot"]),
 ];
 /// What joints of the middle are called.
 const MIDDLE: [(&str, &[&str]); 4] = [
-    ("pelvis", &["hips", "hip", "pelvis", "root", "spine"]),
-    ("neck", &["neck", "neck1", "neck01", "necklower", "lowerneck", "spine004"]),
-    ("head", &["head", "skull", "spine006"]),
+    ("pelvis", &["hips", "hip", "pelvis", "root", "spinebase", "spine"]),
+    ("neck", &["neck", "neck1", "neck01", "necktwist01", "necklower", "lowerneck", "spine004"]),
+    ("head", &["head", "head1", "skull", "spine006"]),
     ("head_top", &["headtop", "headtopend", "headend", "headnub", "topofhead"]),
 ];
 /// What stands before names and says nothing.
-const PREFIXES: [&str; 8] = ["mixamorig", "joint", "bip001", "bip01", "bip1", "def", "jbip", "character1"];
+const PREFIXES: [&str; 9] = ["mixamorig", "joint", "bip001", "bip01", "bip1", "def", "org", "jbip", "character1"];
+/// What says that a joint is on neither side.
+const CENTRE: [&str; 3] = ["c", "center", "centre"];
+/// Share of the joints that begin with a word that says nothing: the name of the character, or of the program.
+const COMMON: f64 = 0.75;
+/// The greatest number of such words.
+const MOST_COMMON: usize = 4;
 /// Share of the torso within which a spine's joint is the chest.
 const CHEST_REACH: f64 = 0.2;
 /// Where the head begins between the neck and its top: the template's share.
@@ -143,26 +155,40 @@ fn shown(value: &Value) -> String {
 
 /// The places of all key points.
 pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
-    let joints = Joints::new(&bvh.nodes);
-    let mut found: [Option<Place>; COUNT] = std::array::from_fn(|_| None);
-    for (&point, names) in map.0.iter().filter(|(point, _)| **point < COUNT) {
-        found[point] = Some(joints.given(NAMES[point], names)?);
-    }
-    for (point, place) in found.iter_mut().enumerate().filter(|(_, place)| place.is_none()) {
-        *place = joints.named(NAMES[point]).map(Place::node);
-    }
-    joints.fill_head(&mut found);
-    let chest = index("chest");
-    if found[chest].is_none() {
-        found[chest] = found[0].as_ref().zip(found[index("neck")].as_ref()).map(|(p, n)| joints.chest(p, n));
-    }
+    let found = Joints::new(&bvh.nodes, 0).places(map)?;
+    let complete = |found: &[Option<Place>; COUNT]| found.iter().all(Option::is_some);
+    let found = match common_words(&bvh.nodes) {
+        words if words > 0 && !complete(&found) => {
+            let shorter = Joints::new(&bvh.nodes, words).places(map)?;
+            if complete(&shorter) { shorter } else { found }
+        }
+        _ => found,
+    };
     let missing: Vec<&str> = (0..COUNT).filter(|&k| found[k].is_none()).map(|k| NAMES[k]).collect();
     if missing.is_empty() {
         // None is missing, so the default is never used.
         Ok(found.map(|place| place.unwrap_or(Place(Vec::new()))))
     } else {
-        Err(MapError::Missing { missing: missing.join(", "), known: joints.known() })
+        Err(MapError::Missing { missing: missing.join(", "), known: Joints::new(&bvh.nodes, 0).known() })
     }
+}
+
+/// The number of words with which most joints begin, at most [`MOST_COMMON`].
+fn common_words(nodes: &[Node]) -> usize {
+    let names: Vec<Vec<String>> = nodes.iter().filter(|node| !node.end).map(|node| words(plain(&node.name))).collect();
+    let mut beginnings: BTreeMap<&[String], usize> = BTreeMap::new();
+    for name in &names {
+        for count in 1..name.len().min(MOST_COMMON + 1) {
+            *beginnings.entry(&name[..count]).or_default() += 1;
+        }
+    }
+    let enough = COMMON * names.len() as f64;
+    beginnings
+        .into_iter()
+        .filter(|(_, joints)| *joints as f64 >= enough)
+        .map(|(words, _)| words.len())
+        .max()
+        .unwrap_or(0)
 }
 
 fn index(point: &str) -> usize {
@@ -179,12 +205,30 @@ struct Joints<'a> {
 }
 
 impl<'a> Joints<'a> {
-    fn new(nodes: &'a [Node]) -> Self {
+    /// `skip` is the number of words that are left out at the front of names.
+    fn new(nodes: &'a [Node], skip: usize) -> Self {
         let mut rest: Vec<DVec3> = Vec::with_capacity(nodes.len());
         for node in nodes {
             rest.push(node.offset + node.parent.map_or(DVec3::ZERO, |parent| rest[parent]));
         }
-        Self { nodes, words: nodes.iter().map(|node| simplified(&node.name)).collect(), rest }
+        Self { nodes, words: nodes.iter().map(|node| simplified(&node.name, skip)).collect(), rest }
+    }
+
+    /// The places of the key points that are known.
+    fn places(&self, map: &JointMap) -> Result<[Option<Place>; COUNT], MapError> {
+        let mut found: [Option<Place>; COUNT] = std::array::from_fn(|_| None);
+        for (&point, names) in map.0.iter().filter(|(point, _)| **point < COUNT) {
+            found[point] = Some(self.given(NAMES[point], names)?);
+        }
+        for (point, place) in found.iter_mut().enumerate().filter(|(_, place)| place.is_none()) {
+            *place = self.named(NAMES[point]).map(Place::node);
+        }
+        self.fill_head(&mut found);
+        let chest = index("chest");
+        if found[chest].is_none() {
+            found[chest] = found[0].as_ref().zip(found[index("neck")].as_ref()).map(|(p, n)| self.chest(p, n));
+        }
+        Ok(found)
     }
 
     fn known(&self) -> String {
@@ -264,10 +308,17 @@ impl<'a> Joints<'a> {
     }
 }
 
-/// Side and name without what differs from program to program.
-fn simplified(name: &str) -> (Option<char>, String) {
-    let name = name.rsplit(':').next().unwrap_or(name);
-    let marked = words(name);
+/// A name without what stands before a colon.
+fn plain(name: &str) -> &str {
+    name.rsplit(':').next().unwrap_or(name)
+}
+
+/// Side and name without what differs from program to program, and without its first `skip` words.
+fn simplified(name: &str, skip: usize) -> (Option<char>, String) {
+    let mut marked = words(plain(name));
+    if skip < marked.len() {
+        marked.drain(..skip);
+    }
     let joined: String = marked.concat();
     let without = PREFIXES.iter().find_map(|prefix| joined.strip_prefix(prefix).filter(|rest| !rest.is_empty()));
     let mut words = marked;
@@ -279,6 +330,12 @@ fn simplified(name: &str) -> (Option<char>, String) {
             drop -= cut;
         }
         words.retain(|word| !word.is_empty());
+    }
+    for at in [0, words.len().saturating_sub(1)] {
+        if words.len() > 1 && CENTRE.contains(&words[at].as_str()) {
+            words.remove(at);
+            break;
+        }
     }
     let side = |word: &str| match word {
         "l" | "left" => Some('l'),
@@ -356,6 +413,12 @@ mod tests {
             ("Bip01", no, "bip01"),
             ("LEFT_WRIST", l, "wrist"),
             ("DEF-thigh.L", l, "thigh"),
+            ("ORG-spine.004", no, "spine004"),
+            ("J_Bip_C_Hips", no, "hips"),
+            ("HipCenter", no, "hip"),
+            ("C", no, "c"),
+            ("LUArm", l, "uarm"),
+            ("ShoulderLeft", l, "shoulder"),
             ("L", no, "l"),
             ("leftarm", l, "arm"),
             ("rhand", r, "hand"),
@@ -365,8 +428,10 @@ mod tests {
             ("Leg", no, "leg"),
             ("", no, ""),
         ] {
-            assert_eq!(simplified(name), (side, plain.to_owned()), "{name}");
+            assert_eq!(simplified(name, 0), (side, plain.to_owned()), "{name}");
         }
+        assert_eq!(simplified("CC_Base_L_Thigh", 2), (l, "thigh".to_owned()));
+        assert_eq!(simplified("Robot", 1), (no, "robot".to_owned()), "a name is never empty");
     }
 
     #[test]

@@ -171,6 +171,35 @@ fn names_of_other_programs_are_known() {
         ),
         sides(["hip", "abdomen", "neck", "head", "End Site"], poser, "l", "r", false),
         sides(["spine", "spine.002", "spine.004", "spine.006", "End Site"], rigify, ".L", ".R", true),
+        sides(
+            ["ORG-spine", "ORG-spine.002", "ORG-spine.004", "ORG-spine.006", "End Site"],
+            rigify.map(|name| Box::leak(format!("ORG-{name}").into_boxed_str()) as &str),
+            ".L",
+            ".R",
+            true,
+        ),
+        sides(
+            ["CC_Base_Hip", "CC_Base_Spine01", "CC_Base_NeckTwist01", "CC_Base_Head", "End Site"],
+            biped,
+            "CC_Base_L_",
+            "CC_Base_R_",
+            false,
+        ),
+        sides(
+            ["J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Neck", "J_Bip_C_Head", "End Site"],
+            parts,
+            "J_Bip_L_",
+            "J_Bip_R_",
+            false,
+        ),
+        sides(
+            ["my Cat Hips", "my Cat Spine", "my Cat Neck", "my Cat Head", "End Site"],
+            parts,
+            "my Cat L ",
+            "my Cat R ",
+            false,
+        ),
+        sides(["SpineBase", "SpineMid", "Neck", "Head", "End Site"], joints, "", "Right", true).map(sided),
         sides(["pelvis", "spine_02", "neck_01", "head", "head_end"], biped, "", "_r", true).map(|name| name),
     ] {
         let text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
@@ -180,6 +209,33 @@ fn names_of_other_programs_are_known() {
             Err(error) => assert!(names[3] == "head" && error.to_string().contains("l_shoulder, l_elbow"), "{error}"),
         }
     }
+}
+
+/// Kinect writes the side behind the name: `ElbowLeft`, `ElbowRight`.
+fn sided(name: &'static str) -> &'static str {
+    let limb = ["Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle"].contains(&name);
+    if limb { Box::leak(format!("{name}Left").into_boxed_str()) } else { name }
+}
+
+#[test]
+fn the_ankle_counts_beside_a_foot_and_the_wrist_beside_a_hand() {
+    // As in files of SMPL and Kinect: the foot hangs on the ankle, and the hand on the wrist.
+    let joints = ["Shoulder", "Elbow", "Wrist", "Hip", "Knee", "Ankle"];
+    let mut names = USUAL;
+    for (k, joint) in joints.into_iter().enumerate() {
+        for (side, first) in [("L_", [5, 11]), ("R_", [8, 14])] {
+            names[first[k / 3] + k % 3] = Box::leak(format!("{side}{joint}").into_boxed_str());
+        }
+    }
+    let mut text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]).trim_end().to_owned() + " 0 0 0 0\n";
+    for (at, more) in [("L_Wrist", "L_Hand"), ("R_Wrist", "R_Hand"), ("L_Ankle", "L_Foot"), ("R_Ankle", "R_Foot")] {
+        let (before, after) = text.split_once(at).unwrap();
+        let (own, rest) = after.split_once("CHANNELS 1 Zrotation\n").unwrap();
+        text = format!(
+            "{before}{at}{own}CHANNELS 1 Zrotation\nJOINT {more}\n{{\nOFFSET 0 -1 1\nCHANNELS 1 Zrotation\n}}\n{rest}"
+        );
+    }
+    near(&seen(&text, &with(View::Front)).unwrap().postures[0], &expected(|[x, _, _]| x));
 }
 
 #[test]
