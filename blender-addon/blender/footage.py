@@ -89,8 +89,15 @@ def _numbers(folder: str, head: str, tail: str) -> dict[int, str]:
 
 
 def picture(pattern: str, number: int) -> str:
-    """The file of a picture."""
-    return pattern % number
+    """The file of a picture. Raises a `Problem` if the pattern does not say where the number stands."""
+    try:
+        return pattern % number
+    except (TypeError, ValueError):
+        if "%" in os.path.dirname(pattern):
+            raise Problem(f"{os.path.dirname(pattern)}: a folder with % in its name cannot be used; rename it") from None
+        raise Problem(
+            f"Found {pattern!r} as footage, expected a name with %d or %04d for the number: choose it again in the panel Footage"
+        ) from None
 
 
 def pattern_of(ob) -> str:

@@ -109,9 +109,13 @@ def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:
     if source.movie:
         return bool(settings.movie) and footage.absolute(ob, settings.movie) == os.path.normpath(source.path)
     number = footage.number_of(source.path)
-    if number is None:
+    if number is None or not settings.pattern:
         return False
-    return footage.picture(footage.absolute(ob, settings.pattern), number) == os.path.normpath(source.path)
+    try:
+        return footage.picture(footage.absolute(ob, settings.pattern), number) == os.path.normpath(source.path)
+    except Problem:
+        # Text that a person typed: what needs the footage says so.
+        return False
 
 
 def _moves(ob: bpy.types.Object, layers) -> bool:

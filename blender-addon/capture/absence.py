@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable
 
+from ..common import kept
+
 FIELD = "absent"
 """Its field in documents: a list of the first and the last picture of each time."""
 
 
 def of(part) -> list[list[int]]:
     """First and last picture number of each time in which a part of an object's list is hidden."""
-    found = json.loads(part.extra).get(FIELD, []) if part.extra else []
-    return [[int(first), int(last)] for first, last in found]
+    return [[first, last] for first, last in kept.pairs(kept.fields(part.extra).get(FIELD, []), int)]
 
 
 def is_hidden(part, picture: int) -> bool:
@@ -49,7 +50,7 @@ def time_of(part, picture: int) -> tuple[int, int] | None:
 
 
 def _put(part, times: list[list[int]]) -> None:
-    extra = json.loads(part.extra) if part.extra else {}
+    extra = kept.fields(part.extra)
     extra.pop(FIELD, None)
     if times:
         extra[FIELD] = times

@@ -6,7 +6,6 @@ fields of an imported document as JSON, and they are in the document again.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -18,7 +17,7 @@ from ..blender import footage
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
-from ..common import jobs
+from ..common import jobs, kept
 from ..common.wording import listed
 from . import absence, contours, corrections, ends, identity, snapping
 
@@ -57,7 +56,7 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
     yield 0.0
     corrected = corrections.detect(found, mapper, settles=settings.moved_line == "SETTLE")
     yield 0.0
-    document = _extra(settings.extra)
+    document = kept.fields(settings.extra)
     known = {
         "pattern": pattern,
         "first": settings.first,
@@ -66,7 +65,7 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
         "width": settings.width,
         "height": settings.height,
     }
-    document.update({"rototoon": VERSION, "footage": _extra(document.get("footage")) | known})
+    document.update({"rototoon": VERSION, "footage": kept.fields(document.get("footage")) | known})
     document["parts"] = [
         _part(part, mapper, corrected[part.number], settings.frame_offset)
         for part in found.parts
@@ -112,19 +111,13 @@ def mapper_of(ob, found: contours.Contours, *more: int) -> Mapper:
     return Mapper(ob, frames, points, found.layer_names)
 
 
-def _extra(text: Any) -> dict[str, Any]:
-    if isinstance(text, dict):
-        return dict(text)
-    return json.loads(text) if text else {}
-
-
 def _part(part: contours.Part, mapper: Mapper, corrected: corrections.Corrections, offset: int) -> dict[str, Any]:
     keys = {}
     for frame in sorted(part.keys):
         stroke = part.keys[frame]
         points = mapper.at(stroke.layer, frame).to_pixels(stroke.control_points(part.closed))
         keys[str(frame - offset)] = points.tolist()
-    entry = _extra(part.extra)
+    entry = kept.fields(part.extra)
     entry.update({"name": part.name, "closed": part.closed, "depth": part.depth, "keys": keys})
     pins = {
         str(frame - offset): {str(i): point.tolist() for i, point in sorted(points.items())}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 
+from ..common import kept
+
 LOST, CUT, LEFT = "lost", "cut", "left"
 """Why a track ends: the part was lost and needs a key; another shot begins; the part left the picture."""
 
@@ -17,7 +19,7 @@ def put(part, ends: list[tuple[int, str]]) -> None:
 
 def of(part) -> list[tuple[int, str]]:
     """The pictures and reasons that `put` stored."""
-    return [(int(frame), reason) for frame, reason in json.loads(part.ends)] if part.ends else []
+    return kept.pairs(part.ends, str)
 
 
 def wanted(part) -> list[int]:

@@ -52,6 +52,13 @@ def _is_camera(_self, ob) -> bool:
     return ob.type == "CAMERA"
 
 
+def _layers_named(settings, _context) -> None:
+    # A layer without a name is none: nothing could be drawn on it, and every layer's name would begin like it.
+    for name in ("contours_layer", "snapped_layer"):
+        if not getattr(settings, name).strip():
+            setattr(settings, name, settings.bl_rna.properties[name].default)
+
+
 def _closed(part, context) -> None:
     closing.follow(part, context)
     live.setting_changed(part, context)
@@ -116,9 +123,10 @@ class CaptureSettings:
         name="Contours",
         description="Layer with the contours. Layers whose name begins with this name and a dot or space count too",
         default="Contours",
+        update=_layers_named,
     )
     snapped_layer: bpy.props.StringProperty(
-        name="Snapped", description="Layer on which Snap to Ink draws", default="Snapped"
+        name="Snapped", description="Layer on which Snap to Ink draws", default="Snapped", update=_layers_named
     )
     preset: bpy.props.EnumProperty(
         name="Method", description="Method of tracking", items=PRESETS, update=live.setting_changed

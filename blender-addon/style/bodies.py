@@ -14,6 +14,7 @@ from rototoon import RototoonError
 from rototoon.style import BODIES, Skeleton, skeleton
 
 from ..blender.errors import Problem
+from ..common import kept
 
 HUMAN = BODIES[0]
 MOST_BYTES = 10_000_000
@@ -39,7 +40,7 @@ def of_document(document: dict[str, Any]) -> Skeleton:
 
 def of(ob) -> Skeleton:
     """The body of an object's limbs."""
-    return of_document(json.loads(ob.rototoon.extra) if ob.rototoon.extra else {})
+    return of_document(kept.fields(ob.rototoon.extra))
 
 
 def joints(body: Skeleton) -> set[str]:

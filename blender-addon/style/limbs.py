@@ -20,6 +20,7 @@ from ..blender import grease_pencil as gp
 from ..blender import placement
 from ..blender.errors import Problem
 from ..capture import document
+from ..common import kept
 from . import bodies
 
 LAYER = "Limbs"
@@ -147,13 +148,13 @@ def add_mark(ob, mark: dict[str, Any]) -> None:
     """Adds a mark to the object's document. It replaces an opposite one on the same frames."""
     extra = _extra(ob)
     opposite = {**mark, "front": mark["behind"], "behind": mark["front"]}
-    kept = [known for known in extra.get("depth_marks", []) if known not in (mark, opposite)]
-    extra["depth_marks"] = [*kept, mark]
+    others = [known for known in extra.get("depth_marks", []) if known not in (mark, opposite)]
+    extra["depth_marks"] = [*others, mark]
     ob.rototoon.extra = json.dumps(extra)
 
 
 def _extra(ob) -> dict[str, Any]:
-    return json.loads(ob.rototoon.extra) if ob.rototoon.extra else {}
+    return kept.fields(ob.rototoon.extra)
 
 
 def defined(ob) -> list[dict[str, Any]]:
