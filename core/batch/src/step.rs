@@ -93,6 +93,8 @@ impl Step {
     pub fn words(&self, document: &str, prefix: &str) -> Vec<String> {
         let mut words = vec![self.name().to_owned(), document.to_owned()];
         if let Some(output) = &self.output {
+            // Pictures are named by a pattern as a whole, and the folder is no part of the artist's.
+            let prefix = if self.kind == Kind::Render { prefix.replace('%', "%%") } else { prefix.to_owned() };
             words.extend(["-o".to_owned(), format!("{prefix}{output}")]);
         }
         words.extend(self.options.iter().cloned());

@@ -53,6 +53,18 @@ fn strange_paths_are_paths_of_files_that_are_missing() {
 }
 
 #[test]
+fn names_may_hold_percent_signs_quotes_and_blanks() {
+    let season = Season::new(1);
+    for name in ["100% done", "%d", "%04d it's $HOME", "-o", "日本"] {
+        let shot = json!({"name": name, "project": "in/sh0/project.json"});
+        fs::write(season.path("m.json"), json!({"rototoon_batch": 1, "steps": steps(), "shots": [shot]}).to_string())
+            .unwrap();
+        season.good(&[]);
+        assert!(season.path(&format!("out/{name}/matte_002.png")).is_file(), "{name}");
+    }
+}
+
+#[test]
 fn a_folder_of_results_that_is_gone_or_no_folder_concerns_its_shot_alone() {
     let season = Season::new(3);
     season.good(&["--shots", "1-2"]);
