@@ -171,6 +171,8 @@ def add_to_library(folder: str, clips: Mapping[str, Any], source: str = "") -> N
 
 
 def read_library(folder: str, character: str = "", motion: str = "", read: bool = True) -> Found:
-    """The clips of a library whose character and motion contain these texts. With `read` false, only the index is read."""
+    """The clips of a library whose character and motion contain these texts, at the frame rate that most of them have. With `read`
+    false, only the index is read.
+    """
     wanted = {"character": character, "motion": motion, "read": read}
     return Found(**json.loads(handles.take(handles.Text, "rototoon_library_find", *text(folder), *as_json(wanted))))

@@ -306,9 +306,9 @@ pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     let entries: Vec<&Entry> = library.search(&wanted.character, &wanted.motion).collect();
     let mut troubles: Vec<String> = library.troubles().iter().map(ToString::to_string).collect();
     let clips = if wanted.read {
-        let (clips, more) = library.read(entries.iter().copied());
+        let fps = Library::usual_rate(entries.iter().copied());
+        let (clips, more) = library.read_at(entries.iter().copied(), fps);
         troubles.extend(more.iter().map(ToString::to_string));
-        let fps = entries.first().map_or(25.0, |entry| entry.fps);
         Clips { clips, fps }.text()
     } else {
         "null".to_owned()

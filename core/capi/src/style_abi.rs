@@ -208,7 +208,8 @@ pub unsafe extern "C" fn rototoon_library_add(
 /// must contain, in upper or lower case; `read` is whether to read the clips.
 ///
 /// `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [text],
-/// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used.
+/// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used. The clips are brought to one
+/// frame rate: that which most of them have, and the highest of several such rates.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_library_find(
     folder: *const u8,

@@ -150,6 +150,31 @@ fn a_library_is_filled_listed_and_learned_from() {
 }
 
 #[test]
+fn clips_of_a_library_may_have_other_frame_rates() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
+    let fill = |clips_of: Value| {
+        std::fs::write(&clips, clips_of.to_string()).unwrap();
+        assert!(rototoon(&["style", "library", "add", to, from]).status.success());
+    };
+    fill(library());
+    // The run of one character at four times the rate, over the same time.
+    let points: Vec<Value> = (0..29).map(|f| posture(2.0, 0.0, f as f64 / 4.0)).collect();
+    fill(json!({"rototoon_clips": 1, "fps": 48, "clips": [{"character": "plain", "motion": "run", "points": points}]}));
+    let out = folder.path().join("out.json");
+    let made = |content: &str| {
+        let request = ["style", "translate", to, "--style", "old", "--motion", "run", "--content", content];
+        let done = rototoon(&[&request[..], &["-o", out.to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let made: Value = serde_json::from_str(&std::fs::read_to_string(&out).unwrap()).unwrap();
+        (made["fps"].as_f64().unwrap(), made["clips"][0]["points"].as_array().unwrap().len())
+    };
+    assert_eq!(made("plain"), (48.0, 29));
+    assert_eq!(made("shy"), (12.0, 8));
+}
+
+#[test]
 fn processes_that_add_at_the_same_time_lose_nothing() {
     const PROCESSES: usize = 8;
     const ADDS: usize = 15;

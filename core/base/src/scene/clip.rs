@@ -9,6 +9,11 @@ use super::template::Template;
 use crate::geometry::Point;
 use std::sync::Arc;
 
+/// Share by which frame rates may differ and count as equal: 24 and 23.976, or a rate from a rounded time of a frame.
+const SAME_RATE: f64 = 0.0011;
+/// Greatest number of frames of a clip at another frame rate.
+const MOST_FRAMES: f64 = 1e6;
+
 /// One motion of one character.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
@@ -50,6 +55,36 @@ impl Clip {
         }
         self.postures.iter().map(|posture| Posture::try_from(posture.as_slice()).ok()).collect()
     }
+
+    /// The clip at another frame rate over the same time. Rates that differ as 24 and 23.976 do count as equal. A clip that would
+    /// have more than a million frames stays as it is.
+    #[must_use]
+    pub fn at_rate(self, own: f64, wanted: f64) -> Self {
+        let last = self.postures.len().saturating_sub(1) as f64;
+        // A number of frames that misses an integer only by rounding counts as that integer.
+        let frames = (last * wanted / own + 1e-6).floor() + 1.0;
+        let possible = wanted > 0.0 && (1.0..=MOST_FRAMES).contains(&frames);
+        if (wanted - own).abs() <= SAME_RATE * own || self.postures.is_empty() || !possible {
+            return self;
+        }
+        let times: Vec<f64> = (0..frames as usize).map(|frame| (frame as f64 * own / wanted).min(last)).collect();
+        let at = |time: f64| (time.floor() as usize, time.ceil() as usize, time.fract());
+        let posture = |(a, b, share): (usize, usize, f64)| {
+            rows(&self.postures[a], &self.postures[b], |p: &Point, q| p.lerp(*q, share))
+        };
+        let spread = |(a, b, share): (usize, usize, f64)| {
+            rows(&self.deviation[a], &self.deviation[b], |p: &f64, q| p + (q - p) * share)
+        };
+        let postures = times.iter().map(|time| posture(at(*time))).collect();
+        let complete = self.deviation.len() == self.postures.len();
+        let deviation = if complete { times.iter().map(|time| spread(at(*time))).collect() } else { Vec::new() };
+        Self { postures, deviation, ..self }
+    }
+}
+
+/// Two rows combined, value by value.
+fn rows<T>(first: &[T], second: &[T], combine: impl Fn(&T, &T) -> T) -> Vec<T> {
+    first.iter().zip(second).map(|(a, b)| combine(a, b)).collect()
 }
 
 /// Postures resampled to `frames` frames; the first and the last are kept. A list of that length is returned unchanged.
@@ -82,6 +117,23 @@ mod tests {
 
     fn at(x: f64) -> Posture {
         [Point::new(x, 0.0); super::super::skeleton::COUNT]
+    }
+
+    #[test]
+    fn another_frame_rate_keeps_the_time() {
+        let mut clip = Clip::new("a", "walk", (0..5).map(|frame| at(f64::from(frame))).collect());
+        clip.deviation = (0..5).map(|frame| vec![f64::from(frame); 3]).collect();
+        let half = clip.clone().at_rate(24.0, 12.0);
+        assert_eq!(half.human().unwrap(), [at(0.0), at(2.0), at(4.0)]);
+        assert_eq!(half.deviation[1], [2.0; 3]);
+        let twice = clip.clone().at_rate(24.0, 48.0);
+        assert_eq!((twice.postures.len(), twice.human().unwrap()[3]), (9, at(1.5)));
+        // The rest of a frame at the end is left out: nothing is known after the last one.
+        assert_eq!(clip.clone().at_rate(24.0, 18.0).postures.len(), 4);
+        for wanted in [24.0, 23.976, 23.999_808, 1e9, f64::NAN, 0.0] {
+            assert_eq!(clip.clone().at_rate(24.0, wanted), clip, "{wanted}");
+        }
+        assert_eq!(Clip::new("a", "b", Vec::new()).at_rate(1.0, 2.0).postures.len(), 0);
     }
 
     #[test]

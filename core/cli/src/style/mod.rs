@@ -43,14 +43,16 @@ fn name(id: &'static str, help: &'static str) -> Arg {
     Arg::new(id).long(id).value_name("NAME").help(help).required(true)
 }
 
-/// The clips of a file, or of a library. Unusable files of a library give warnings.
-fn load(from: &Path) -> Result<Clips, Failure> {
+/// The clips of a file, or of a library. Those of a library are brought to one frame rate: that of the first clip of which
+/// `leads` is true, else that of most clips. Unusable files of a library give warnings.
+fn load(from: &Path, leads: impl Fn(&str, &str) -> bool) -> Result<Clips, Failure> {
     if !from.is_dir() {
         return Clips::load(from).map_err(|e| Failure::Other(e.to_string()));
     }
     let library = Library::open(from);
-    let (clips, troubles) = library.read(library.entries().iter());
+    let leading = library.entries().iter().find(|entry| leads(&entry.character, &entry.motion));
+    let fps = leading.map_or_else(|| Library::usual_rate(library.entries().iter()), |entry| entry.fps);
+    let (clips, troubles) = library.read_at(library.entries().iter(), fps);
     library.troubles().iter().chain(&troubles).for_each(|trouble| line("warning", &trouble.to_string()));
-    let fps = library.entries().first().map_or(25.0, |entry| entry.fps);
     Ok(Clips { clips, fps })
 }

@@ -70,7 +70,7 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = project::load(from)?;
-    let clips = load(arguments::path(given, "clips"))?;
+    let clips = load(arguments::path(given, "clips"), |character, motion| is_asked(given, character, motion))?;
     let clip = chosen(&clips, arguments::path(given, "clips"), given)?;
     let inputs = project::inputs(&document, from).file(arguments::path(given, "clips"));
     let inputs = given.get_one::<PathBuf>("over").into_iter().fold(inputs, |inputs, path| inputs.file(path));
@@ -111,10 +111,15 @@ fn pair(text: &str) -> Result<(String, String), String> {
         .ok_or_else(|| format!("found {text:?}, expected two names of chains with = between them"))
 }
 
+/// Whether the arguments select the clips of a character and a motion.
+fn is_asked(given: &ArgMatches, character: &str, motion: &str) -> bool {
+    let fits = |id: &str, value: &str| given.get_one::<String>(id).is_none_or(|wanted| wanted == value);
+    fits("character", character) && fits("motion", motion)
+}
+
 /// The clip that the arguments select.
 fn chosen<'a>(clips: &'a Clips, from: &Path, given: &ArgMatches) -> Result<&'a Clip, Failure> {
-    let fits = |id: &str, value: &str| given.get_one::<String>(id).is_none_or(|wanted| wanted == value);
-    let mut found = clips.clips.iter().filter(|c| fits("character", &c.character) && fits("motion", &c.motion));
+    let mut found = clips.clips.iter().filter(|c| is_asked(given, &c.character, &c.motion));
     match (found.next(), found.next()) {
         (Some(only), None) => Ok(only),
         (first, _) => {

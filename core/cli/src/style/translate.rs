@@ -90,7 +90,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "clips"), arguments::path(given, "output"));
     let text = |id: &str| arguments::choice(given, id);
     let other = |error: &dyn std::fmt::Display| Failure::Other(error.to_string());
-    let clips = load(from)?;
+    let clips = load(from, |character, motion| character == text("content") && motion == text("motion"))?;
     let keys = match given.get_one::<PathBuf>("key_pose") {
         Some(path) => load_key_poses(path).map_err(|e| other(&e))?,
         None => Vec::new(),

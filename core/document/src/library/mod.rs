@@ -94,18 +94,39 @@ impl Library {
         })
     }
 
-    /// Reads the clips of some entries. Files that cannot be used are reported and left out.
+    /// Reads the clips of some entries as they are. Files that cannot be used are reported and left out.
     pub fn read<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Clip>, Vec<Trouble>) {
+        self.read_all(entries, |clip, _| clip)
+    }
+
+    /// As [`Library::read`], with all clips at one frame rate: styles are learned frame by frame.
+    pub fn read_at<'a>(&self, entries: impl Iterator<Item = &'a Entry>, fps: f64) -> (Vec<Clip>, Vec<Trouble>) {
+        self.read_all(entries, |clip, own| clip.at_rate(own, fps))
+    }
+
+    fn read_all<'a>(
+        &self,
+        entries: impl Iterator<Item = &'a Entry>,
+        made: impl Fn(Clip, f64) -> Clip,
+    ) -> (Vec<Clip>, Vec<Trouble>) {
         let (mut clips, mut troubles) = (Vec::new(), Vec::new());
         let files: Vec<PathBuf> = entries.map(|entry| self.folder.join(&entry.file)).collect();
         let read: Vec<_> = files.par_iter().map(|file| one_clip(file)).collect();
         for result in read {
             match result {
-                Ok((clip, _)) => clips.push(clip),
+                Ok((clip, own)) => clips.push(made(clip, own)),
                 Err(trouble) => troubles.push(trouble),
             }
         }
         (clips, troubles)
+    }
+
+    /// The frame rate that most of some entries have, and the highest of several; 25 without entries.
+    pub fn usual_rate<'a>(entries: impl Iterator<Item = &'a Entry>) -> f64 {
+        let mut rates: Vec<f64> = entries.map(|entry| entry.fps).collect();
+        rates.sort_by(f64::total_cmp);
+        let runs = rates.chunk_by(|a, b| a == b);
+        runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied()).unwrap_or(25.0)
     }
 
     /// Adds the clip files that no entry names, in the order of their names.

@@ -70,6 +70,25 @@ fn files_put_into_the_folder_are_found_and_twins_reported() {
 }
 
 #[test]
+fn clips_of_several_frame_rates_are_read_at_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut library = Library::open(folder.path());
+    for (motion, frames, fps) in [("walk", 5, 24.0), ("run", 9, 48.0), ("hop", 9, 48.0), ("fly", 3, 12.0)] {
+        library.add(&clip("Ann", motion, frames), fps, "").unwrap();
+    }
+    let counts = |fps: f64| {
+        let (clips, troubles) = library.read_at(library.entries().iter(), fps);
+        assert!(troubles.is_empty());
+        clips.iter().map(|clip| clip.postures.len()).collect::<Vec<_>>()
+    };
+    assert_eq!((counts(24.0), counts(48.0)), (vec![5, 5, 5, 5], vec![9, 9, 9, 9]));
+    assert_eq!(library.read(library.entries().iter()).0[1].postures.len(), 9, "as it is");
+    assert_eq!(Library::usual_rate(library.entries().iter()), 48.0);
+    assert_eq!(Library::usual_rate(library.search("", "walk")), 24.0);
+    assert_eq!(Library::usual_rate(library.search("", "swim")), 25.0);
+}
+
+#[test]
 fn entries_that_cannot_be_used_are_named_and_the_rest_is_used() {
     let folder = tempfile::tempdir().unwrap();
     let entry = |file: &str, more: &str| {

@@ -135,8 +135,14 @@ pub fn seen(text: &str, options: &Options) -> Result<Seen, MotionError> {
         }
         postures.push(flat);
     }
-    let (postures, fps) = at_rate(postures, 1.0 / bvh.frame_time, options.fps)?;
+    let (postures, fps) = at_rate(postures, rate(&bvh), options.fps)?;
     Ok(Seen { postures, fps, yaw: camera.yaw })
+}
+
+/// Frames per second; a rate that misses an integer only by rounding is that integer.
+fn rate(bvh: &Bvh) -> f64 {
+    let rate = 1.0 / bvh.frame_time;
+    if (rate - rate.round()).abs() <= 1e-12 * rate { rate.round() } else { rate }
 }
 
 fn frames(bvh: &Bvh, options: &Options) -> Result<RangeInclusive<usize>, MotionError> {

@@ -109,9 +109,7 @@ pub fn parse(text: &str) -> Result<Bvh, BvhError> {
     let count = number_after(&mut lines, "Frames:", "Frames: and a whole number from 1", |text| {
         text.parse::<usize>().ok().filter(|count| *count > 0)
     })?;
-    let frame_time = number_after(&mut lines, "Frame Time:", "Frame Time: and a positive number of seconds", |text| {
-        text.parse::<f64>().ok().filter(|time| *time > 0.0 && time.is_finite() && time.recip().is_finite())
-    })?;
+    let frame_time = number_after(&mut lines, "Frame Time:", "Frame Time: and a positive number of seconds", seconds)?;
     let values = motion(&mut lines, count, channels)?;
     Ok(Bvh { nodes, frame_time, values, channels })
 }
@@ -127,7 +125,9 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn new(text: &'a str) -> Self {
-        Self { rest: text.trim_start_matches('\u{feff}').lines().enumerate(), line: 1, left: "" }
+        // Old programs end texts with a mark of their own.
+        let text = text.trim_start_matches('\u{feff}').trim_end_matches(['\u{1a}', '\0']);
+        Self { rest: text.lines().enumerate(), line: 1, left: "" }
     }
 
     /// The rest of the present line, or the next line that is not blank.
@@ -321,6 +321,18 @@ fn number_after<T>(
     after.and_then(|number| read(number.trim())).ok_or_else(|| lines.wrong_word(line, expected))
 }
 
+/// The time of a frame. Programs round it: 0.041667 stands for a 24th of a second, and whole frame rates are meant to be whole.
+fn seconds(text: &str) -> Option<f64> {
+    let time = text.parse::<f64>().ok().filter(|time| *time > 0.0 && time.is_finite() && time.recip().is_finite())?;
+    let whole = time.recip().round().max(1.0).recip();
+    let plain = text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let rounding = 0.5 * 0.1_f64.powi(decimals.min(99) as i32);
+    // From three digits on: 0.1 is a tenth, and nobody knows what 0.03 is.
+    let digits = text.trim_start_matches(['0', '.']).len();
+    Some(if plain && digits >= 3 && (time - whole).abs() <= rounding * (1.0 + 1e-9) { whole } else { time })
+}
+
 fn motion(lines: &mut Lines, count: usize, channels: usize) -> Result<Vec<f64>, BvhError> {
     let mut values = Vec::new();
     for frame in 0..count {
@@ -373,6 +385,30 @@ mod tests {
         assert_eq!(parse(&odd).unwrap(), bvh);
         let two = SMALL.replace("MOTION", "ROOT prop\n{\nOFFSET 0 0 0\n}\nMOTION");
         assert_eq!(parse(&two).unwrap().nodes[3].parent, None);
+    }
+
+    #[test]
+    fn rounded_times_of_frames_mean_whole_rates() {
+        let rate = |time: &str| parse(&SMALL.replace("0.25", time)).unwrap().frame_time.recip();
+        for (time, expected) in [
+            ("0.041667", 24.0),
+            ("0.0416667", 24.0),
+            (".0333333", 30.0),
+            ("0.033333", 30.0),
+            ("0.00833333", 120.0),
+            ("0.00833", 120.0),
+            ("0.0166667", 60.0),
+            ("0.04", 25.0),
+            ("0.0417083", 0.0417083_f64.recip()), // 23.976
+            ("0.033367", 0.033367_f64.recip()),   // 29.97
+            ("0.03", 0.03_f64.recip()),
+            ("4.1667e-2", 4.1667e-2_f64.recip()),
+            ("2", 0.5),
+        ] {
+            assert!((rate(time) - expected).abs() < 1e-9, "{time}: {}", rate(time));
+        }
+        let ended = parse(&format!("{SMALL}\u{1a}\0\0"));
+        assert_eq!(ended, parse(SMALL));
     }
 
     #[test]
