@@ -230,25 +230,15 @@ def copied(data: bpy.types.ID) -> Iterator[bpy.types.ID]:
 
 def set_keyframe_type(layer: bpy.types.bpy_struct, types: Mapping[int, str]) -> None:
     """Sets the keyframe type of the frames in `types`."""
-    changed = False
-    for frame in layer.frames:
-        kind = types.get(frame.frame_number)
-        if kind is not None and frame.keyframe_type != kind:
-            frame.keyframe_type = kind
-            changed = True
+    changed = [frame for frame in layer.frames if types.get(frame.frame_number, frame.keyframe_type) != frame.keyframe_type]
+    for frame in changed:
+        frame.keyframe_type = types[frame.frame_number]
     if changed:
-        _mark_frames(layer)
-
-
-def _mark_frames(layer: bpy.types.bpy_struct) -> None:
-    """Lets Blender write the types of a layer's frames anew.
-
-    Files and undo steps get the frames as they were when a frame was last made, moved or removed: a new type alone would be
-    lost. A frame before the first one is made and removed; behind others it could cut a drawing's fixed duration.
-    """
-    number = min(frame.frame_number for frame in layer.frames) - 1
-    layer.frames.new(number)
-    layer.frames.remove(number)
+        # Files and undo steps get the frames as they were when one was last made, moved or removed: a new type alone would be lost.
+        # The one before all others is made and removed; behind others it could cut a drawing's fixed duration.
+        number = min(frame.frame_number for frame in layer.frames) - 1
+        layer.frames.new(number)
+        layer.frames.remove(number)
 
 
 def make_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int], kind: str) -> None:

@@ -12,8 +12,8 @@ PLAIN = {"STRING", "INT", "FLOAT", "ENUM", "BOOLEAN"}
 
 def plain(properties):
     """The values of all single properties."""
-    kinds = properties.bl_rna.properties
-    return {name: getattr(properties, name) for name in kinds.keys() if kinds[name].type in PLAIN and not getattr(kinds[name], "is_array", False)}
+    single = (prop for prop in properties.bl_rna.properties if prop.type in PLAIN and not getattr(prop, "is_array", False))
+    return {prop.identifier: getattr(properties, prop.identifier) for prop in single}
 
 
 def state(addon):
@@ -51,5 +51,5 @@ def test_a_new_key_of_an_opened_file_is_a_key_in_the_saved_one(addon, fake, tmp_
     bpy.ops.rototoon.new_key()
     bpy.ops.wm.save_mainfile()
     bpy.ops.wm.open_mainfile(filepath=path)
-    kinds = {number: kind for number, (_, kind) in addon("blender.grease_pencil").drawings(shots.layer_of(bpy.context.object)).items()}
-    assert [kinds[number] for number in (1, 4, 5, 6, 9)] == ["KEYFRAME", "GENERATED", "KEYFRAME", "GENERATED", "KEYFRAME"]
+    drawings = addon("blender.grease_pencil").drawings(shots.layer_of(bpy.context.object))
+    assert [drawings[number][1] for number in (1, 4, 5, 6, 9)] == ["KEYFRAME", "GENERATED", "KEYFRAME", "GENERATED", "KEYFRAME"]
