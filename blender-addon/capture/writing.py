@@ -16,7 +16,7 @@ from ..blender import grease_pencil as gp
 from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
-from . import absence, correspondence
+from . import absence, correspondence, weights
 from .contours import CURVE_STYLE, POINT_STYLE, Contours, Drawing, Part, Stroke
 from .corrections import Corrections
 
@@ -212,11 +212,15 @@ def write_steps(layer, block: Block, before: Iterable[int], read: Mapping[int, n
     data, name = layer.id_data, layer.name
     wanted = {int(frame): row for row, frame in enumerate(block.frames) if block.present[row].any()}
     old = wanted.keys() & set(gp.frame_numbers(layer))
+    keys = weights.Keys(layer)
     gp.make_frames(layer, wanted, gp.GENERATED)
     yield 0.0
     left = list(wanted.items())
     while left:
         due = _due(data, name, block, left, old, read or {})
+        for frame, row in due:
+            if frame not in old:
+                keys.begin(_layer(data, name), frame, rows_of(block, row))
         drawings = gp.drawings(_layer(data, name))
         for frame, row in due:
             gp.replace_made(drawings[frame][0], rows_of(block, row))
