@@ -6,9 +6,10 @@ use clap::{Arg, ArgMatches, Command};
 use rototoon::pipeline::{self, Picture, RenderJob};
 use rototoon::project::output::check_writable;
 use rototoon::render::OverlayOptions;
-use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::Stage;
+use rototoon::scene::{FrameNumber, FramePattern};
 use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -65,11 +66,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         output: output.to_owned(),
     };
     let document = project::load(from)?;
-    check_writable(output.as_ref())?;
+    check_writable(&probed(output))?;
     progress::run(arguments::threads(given), |bar| {
         pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
     })?;
     Ok(())
+}
+
+/// The file that shows whether the pictures of a pattern can be written. In the pattern `%%` stands for a percent sign, in the name of
+/// its folder too.
+fn probed(pattern: &str) -> PathBuf {
+    let file = Path::new(pattern).file_name().unwrap_or_default();
+    FramePattern::parse(pattern).map_or_else(|_| pattern.into(), |read| read.path(0).with_file_name(file))
 }
 
 /// Reads frames in the form `A-B` or `A`. Both may be negative.
