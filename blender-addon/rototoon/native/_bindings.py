@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xfe10981ec33276f8
+HEADER_HASH = 0xf4a4342e16a27d48
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0

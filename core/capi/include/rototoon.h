@@ -614,7 +614,8 @@ RototoonStatus rototoon_library_add(const uint8_t *folder,
 // must contain, in upper or lower case; `read` is whether to read the clips.
 //
 // `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [text],
-// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used.
+// "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used. The clips are brought to one
+// frame rate: that which most of them have, and the highest of several such rates.
 RototoonStatus rototoon_library_find(const uint8_t *folder,
                                      size_t folder_length,
                                      const uint8_t *wanted,
