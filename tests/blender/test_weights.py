@@ -56,7 +56,7 @@ def test_the_result_is_the_same_as_without_weights(addon, ob):
 
 def test_in_betweens_have_the_weights_of_the_earlier_key(addon, library, tmp_path):
     gp = addon("blender.grease_pencil")
-    data = bpy.data.grease_pencils.new("ink")
+    data = gp.datablocks().new("ink")
     ob = bpy.data.objects.new("ink", data)
     bpy.context.scene.collection.objects.link(ob)
     bpy.context.view_layer.objects.active = ob
