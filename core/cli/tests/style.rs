@@ -297,6 +297,13 @@ fn motion_capture_becomes_clips() {
     };
     let (lift, odd, map) = (path("anna/lift.bvh"), path("anna/odd.bvh"), path("map.json"));
     assert_eq!(import(&[&lift, &odd, "--joints", &map]).0, Some(1), "the map does not fit the first");
+    // A name in the encoding of an old program's country.
+    let old = captured("LeftHand").replace("ROOT Hips", "ROOT Hips of Hr. M?ller").into_bytes();
+    let old: Vec<u8> = old.into_iter().map(|byte| if byte == b'?' { 0xFC } else { byte }).collect();
+    std::fs::write(folder.path().join("anna/old.bvh"), old).unwrap();
+    let pelvis = folder.path().join("pelvis.json");
+    std::fs::write(&pelvis, r#"{"pelvis": "Hips of Hr. M\ufffdller"}"#).unwrap();
+    assert_eq!(import(&[&path("anna/old.bvh"), "--joints", pelvis.to_str().unwrap()]), (Some(0), String::new()));
     assert_eq!(import(&[&lift]), (Some(0), String::new()));
     let clips: Value = serde_json::from_str(&std::fs::read_to_string(path("clips.json")).unwrap()).unwrap();
     assert_eq!((&clips["clips"][0]["character"], &clips["clips"][0]["motion"]), (&json!("anna"), &json!("lift")));

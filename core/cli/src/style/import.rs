@@ -92,7 +92,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let files: Vec<&PathBuf> = given.get_many("files").into_iter().flatten().collect();
     for (k, file) in files.iter().enumerate() {
         let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", file.display()));
-        let text = file::text(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
+        // Names of joints may be in any encoding of their country; nothing else is beyond ASCII.
+        let bytes = file::bytes(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
+        let text = String::from_utf8_lossy(&bytes);
         let made = seen(&text, &options).map_err(|error| failed(&error))?;
         let (character, motion) = labels(given, file)?;
         if let Some(twin) = clips.iter().position(|clip| clip.character == character && clip.motion == motion) {
