@@ -8,6 +8,7 @@
 //! | [`image`] | `rototoon-image` | pictures from files, filters, optical flow |
 //! | [`fit`] | `rototoon-fit` | quadratic B-splines from points |
 //! | [`lines`] | `rototoon-lines` | drawn lines as strokes, the same on all frames |
+//! | [`fill`] | `rototoon-fill` | colours of regions, carried from painted drawings |
 //! | [`track`] | `rototoon-track` | contours from key frames to every frame |
 //! | [`snap`] | `rototoon-snap` | tracked contours onto the drawn ink |
 //! | [`tween`] | `rototoon-tween` | matched strokes, in-betweens, hidden lines |
@@ -77,6 +78,7 @@ pub mod pipeline;
 pub use rototoon_base::{curve, file, geometry, memory, numeric, scene};
 pub use rototoon_document as project;
 pub use rototoon_exchange::{export, import};
+pub use rototoon_fill as fill;
 pub use rototoon_fit as fit;
 pub use rototoon_image as image;
 pub use rototoon_lines as lines;

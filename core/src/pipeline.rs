@@ -8,6 +8,7 @@ mod breakdown;
 mod check;
 mod doubts;
 mod error;
+mod fill;
 pub mod memory;
 mod report;
 mod reshape;
@@ -22,6 +23,7 @@ pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
+pub use fill::{FillReport, FilledFrame, fill};
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
@@ -30,7 +32,7 @@ pub use trace::{TraceMemory, trace};
 pub use tween::{captured, pegs_of, spacing_of, tween, tween_drawn};
 pub use unseen::unseen;
 
-use crate::export::{self, SvgOptions, svg_with_strokes};
+use crate::export::{self, SvgOptions, svg_with_drawn};
 use crate::fit;
 use crate::geometry::Point;
 use crate::image::Sequence;
@@ -314,13 +316,14 @@ fn frames_of(
     Ok(asked)
 }
 
-/// Exports the document as an animated SVG: its parts, and its traced strokes over them.
+/// Exports the document as an animated SVG: its painted regions, its parts, and its traced strokes over them.
 ///
 /// # Errors
 ///
-/// [`PipelineError::Field`] if the field `traced` cannot be read.
+/// [`PipelineError::Field`] if the fields `filled` or `traced` cannot be read.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, PipelineError> {
-    Ok(svg_with_strokes(&document.scene, &trace::strokes_to_export(document)?, options))
+    let (fills, strokes) = (fill::fills_to_export(document)?, trace::strokes_to_export(document)?);
+    Ok(svg_with_drawn(&document.scene, &fills, &strokes, options))
 }
 
 /// Exports the document as a RotoPaint node for Nuke. Points of snapped paths are about `spacing` pixels apart.

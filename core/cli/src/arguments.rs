@@ -91,3 +91,13 @@ pub fn flag(arguments: &ArgMatches, id: &str) -> bool {
 pub fn threads(arguments: &ArgMatches) -> usize {
     arguments.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
 }
+
+/// `--sensitivity NUMBER` of what finds ink.
+pub fn sensitivity() -> Arg {
+    Arg::new("sensitivity")
+        .long("sensitivity")
+        .value_name("NUMBER")
+        .help("Sensitivity to faint ink, from 0.1 to 10: with 2, ink may be half as dark as usual")
+        .default_value("1")
+        .value_parser(within(0.1, 10.0))
+}

@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
+//! - [`track`], [`snap`], [`trace`], [`fill`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
@@ -18,6 +18,7 @@ mod batch;
 mod check;
 mod export;
 mod failure;
+mod fill;
 mod fit;
 mod import;
 mod job;
@@ -41,11 +42,12 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 15] {
+fn subcommands() -> [(Command, Run); 16] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (trace::command(), trace::run),
+        (fill::command(), fill::run),
         (render::command(), render::run),
         (sheet::command(), sheet::run),
         (absent::command(), absent::run),

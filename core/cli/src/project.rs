@@ -7,8 +7,20 @@ use std::path::Path;
 
 /// Reads a document and prints its warnings.
 pub fn load(path: &Path) -> Result<Document, Failure> {
+    warned(path, false)
+}
+
+/// As [`load`], for work on drawings, which needs no part.
+pub fn load_drawn(path: &Path) -> Result<Document, Failure> {
+    warned(path, true)
+}
+
+fn warned(path: &Path, drawn: bool) -> Result<Document, Failure> {
     let document = Document::load(path)?;
-    for warning in document.problems().warnings().chain(document.misspelt().warnings()) {
+    let problems = document.problems();
+    let told =
+        problems.warnings().filter(|warning| !(drawn && document.scene.parts.is_empty() && warning.place == "parts"));
+    for warning in told.chain(document.misspelt().warnings()) {
         line("warning", &format!("{}: {warning}", path.display()));
     }
     Ok(document)

@@ -41,21 +41,14 @@ pub fn command() -> Command {
                 .default_value("auto")
                 .value_parser(styles),
         )
-        .arg(
-            Arg::new("sensitivity")
-                .long("sensitivity")
-                .value_name("NUMBER")
-                .help("Sensitivity to faint ink, from 0.1 to 10: with 2, ink may be half as dark as usual")
-                .default_value("1")
-                .value_parser(arguments::within(0.1, 10.0)),
-        )
+        .arg(arguments::sensitivity())
         .args(arguments::of_stage(Stage::Run))
 }
 
 /// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
-    let mut document = project::load(from)?;
+    let mut document = project::load_drawn(from)?;
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let style = match arguments::choice(given, "line_style") {

@@ -12,6 +12,7 @@
 //! - [`validate`]: what a document must hold beyond being well-formed
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
+//! - [`fills`]: clicks of a painter, and the painted regions of every frame
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`skeleton`]: which body the limbs or clips are of
 //! - [`curves`]: files of curves to fit
@@ -53,6 +54,7 @@ pub mod curves;
 mod direction;
 pub mod drawings;
 mod fields;
+pub mod fills;
 pub mod inputs;
 pub mod library;
 pub mod limbs;

@@ -10,7 +10,7 @@ use super::schema::{FOOTAGE, Field, PART, TOP};
 use super::shape::part_place;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 12] = [
+const OTHERS: [&str; 14] = [
     "drawings",
     "pairs",
     "pegs",
@@ -22,6 +22,8 @@ const OTHERS: [&str; 12] = [
     "depth_marks",
     "follows",
     "traced",
+    "fills",
+    "filled",
     "clips",
 ];
 

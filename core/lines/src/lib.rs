@@ -23,6 +23,7 @@
 //! - `drawing`, `stroke`: all of this for one picture
 //! - `finish`: fitted curves, widths, colours
 //! - `carry`: the next drawing
+//! - [`displaced`]: where the lines of one drawing are on another one
 //! - [`apart`]: how far drawn lines are from what a picture shows
 //!
 //! Methods that solve for a frame field over the ink (Favreau et al. 2016, Bessmeltsev & Solomon 2019, Puhachov et al.
@@ -75,7 +76,7 @@ mod economy;
 mod finish;
 mod graph;
 pub mod ink;
-mod outline;
+pub mod outline;
 mod outside;
 mod pairing;
 mod sketch;
@@ -84,7 +85,7 @@ mod stroke;
 mod strokes;
 mod thin;
 
-pub use carry::{Key, between, bind, carry, carry_known, identify};
+pub use carry::{Displaced, Key, between, bind, carry, carry_known, displaced, identify};
 pub use drawing::Drawing;
 pub use stroke::{Options, Stroke, Style, Tracked};
 

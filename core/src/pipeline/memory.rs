@@ -16,6 +16,8 @@ const RENDER_PART: u64 = 8;
 const FOLLOW: u64 = 45;
 /// Bytes for each pixel of the two pictures that tracing holds at once.
 const TRACE: u64 = 120;
+/// Bytes for each pixel of the four pictures that filling holds at once.
+const FILL: u64 = 320;
 
 /// Number of frames, at most `threads`, that can be rendered at the same time.
 ///
@@ -50,6 +52,15 @@ pub fn to_follow(footage: &Footage) -> Result<(), PipelineError> {
 /// [`PipelineError::Memory`].
 pub fn to_trace(footage: &Footage) -> Result<(), PipelineError> {
     ask(footage, pixels(footage).saturating_mul(TRACE))
+}
+
+/// Checks that there is memory to fill the drawings of a footage.
+///
+/// # Errors
+///
+/// [`PipelineError::Memory`].
+pub fn to_fill(footage: &Footage) -> Result<(), PipelineError> {
+    ask(footage, pixels(footage).saturating_mul(FILL))
 }
 
 fn pixels(footage: &Footage) -> u64 {

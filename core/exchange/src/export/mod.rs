@@ -27,7 +27,7 @@ pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;
 pub use silhouette::silhouette;
-pub use svg::{Motion, SvgOptions, SvgStroke, svg, svg_with_strokes};
+pub use svg::{Motion, SvgFill, SvgOptions, SvgStroke, svg, svg_with_drawn};
 
 use rototoon_base::scene::{Falloff, FalloffCurve, Scene};
 

@@ -73,14 +73,26 @@ pub struct SvgStroke {
     pub lined: bool,
 }
 
-/// The scene as an SVG document, in pixels of the footage.
-pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
-    svg_with_strokes(scene, &[], options)
+/// A painted region on several frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SvgFill {
+    /// Its number.
+    pub track: usize,
+    /// Its outline and those of its holes on each frame, in pixels of the footage.
+    pub outlines: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
+    /// Its colour, sRGB-encoded, 0 to 1.
+    pub colour: Colour,
 }
 
-/// The scene and strokes over it as an SVG document, in pixels of the footage. Each stroke is a path with the id
-/// `stroke-` and its number.
-pub fn svg_with_strokes(scene: &Scene, strokes: &[SvgStroke], options: &SvgOptions) -> String {
+/// The scene as an SVG document, in pixels of the footage.
+pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
+    svg_with_drawn(scene, &[], &[], options)
+}
+
+/// The scene, painted regions behind it and strokes over it as an SVG document, in pixels of the footage. Each region is
+/// a path with the id `fill-` and its number, each stroke one with `stroke-` and its number. Regions change from frame to frame
+/// without motion between, since their outlines have no counterparts.
+pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], options: &SvgOptions) -> String {
     let footage = &scene.footage;
     let (width, height) = (footage.width, footage.height);
     let mut out = format!(
@@ -88,6 +100,9 @@ pub fn svg_with_strokes(scene: &Scene, strokes: &[SvgStroke], options: &SvgOptio
     );
     let line = LINE_WIDTH * (height as f64 / 540.0).max(0.5);
     let _ = writeln!(out, "<g stroke-width=\"{line}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");
+    for painted in fills {
+        fill(&mut out, scene, painted);
+    }
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
     for index in order {
@@ -107,6 +122,16 @@ fn part(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     let fill = if part.closed { colour.as_str() } else { "none" };
     let style = format!("id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
     path(out, scene, &style, &escaped(&part.name), options.motion, shape);
+}
+
+fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
+    let shape = |frame: FrameNumber| {
+        let outlines = fill.outlines.get(&frame)?;
+        Some(outlines.iter().map(|outline| data(outline, true)).collect::<String>())
+    };
+    let (track, colour) = (fill.track, palette::hex(fill.colour));
+    let style = format!("id=\"fill-{track}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"none\"");
+    path(out, scene, &style, &format!("region {track}"), Motion::Hold, shape);
 }
 
 fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
@@ -277,10 +302,10 @@ mod tests {
             SvgStroke { track: 7, points, closed: false, width: 2.5, colour: [1.0, 0.0, 0.0], ..SvgStroke::default() };
         let stroke = SvgStroke { lined: true, ..red.clone() };
         let bare = Scene { parts: Vec::new(), ..scene() };
-        let text = svg_with_strokes(&bare, &[stroke], &SvgOptions::default());
+        let text = svg_with_drawn(&bare, &[], &[stroke], &SvgOptions::default());
         assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
         let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
-        let filled = svg_with_strokes(&bare, &[black], &SvgOptions::default());
+        let filled = svg_with_drawn(&bare, &[], &[black], &SvgOptions::default());
         assert!(filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" d="), "{filled}");
         let values = attribute(&text, "values");
         assert_eq!(values[1], "hidden;visible;hidden");
@@ -296,5 +321,22 @@ mod tests {
         assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
         scene.parts[0].keys.insert(0, Vec::new());
         assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
+    }
+
+    #[test]
+    fn painted_regions_have_holes_and_are_hidden_where_they_are_not() {
+        let scene = scene();
+        let square = |at: f64, size: f64| {
+            [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)].map(|(x, y)| Point::new(at + x, at + y)).to_vec()
+        };
+        let outlines = BTreeMap::from([(scene.footage.first, vec![square(1.0, 9.0), square(3.0, 2.0)])]);
+        let fill = SvgFill { track: 3, outlines, colour: [1.0, 0.0, 0.0] };
+        let text = svg_with_drawn(&scene, &[fill], &[], &SvgOptions::default());
+        let expected = "<path id=\"fill-3\" fill=\"#ff0000\" fill-rule=\"evenodd\" stroke=\"none\" \
+                        d=\"M1 1L10 1 10 10 1 10ZM3 3L5 3 5 5 3 5Z\">";
+        assert!(text.contains(expected), "{text}");
+        let (region, rest) = (text.find("fill-3").unwrap(), text.find("part-0").unwrap());
+        assert!(region < rest, "paint is behind the parts");
+        assert!(text[region..rest].contains("visible;hidden"), "{text}");
     }
 }

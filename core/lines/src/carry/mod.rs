@@ -21,6 +21,7 @@ mod samples;
 pub use between::{Key, between};
 pub use bind::bind;
 pub use identify::identify;
+pub use register::{Displaced, displaced};
 
 use crate::drawing::Drawing;
 use crate::finish;

@@ -108,19 +108,30 @@ struct Scene {
     size: f64,
 }
 
+/// Places on the lines of one drawing, and where they are on another one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displaced {
+    /// Each place with its shift, in pixels.
+    pub places: Vec<(Point, Point)>,
+    /// Whether the drawings show the same thing.
+    pub related: bool,
+}
+
+/// Finds where the lines of the drawing `from`, which are `strokes`, are on the drawing `to`.
+pub fn displaced(from: &Drawing, strokes: &[Stroke], to: &Drawing) -> Displaced {
+    let strokes = strokes.iter().filter(|stroke| stroke.points.len() > 1).cloned();
+    let strokes: Vec<Tracked> = strokes.enumerate().map(|(track, stroke)| Tracked::sure(track, stroke)).collect();
+    let scene = Scene::new(&strokes, from.unit);
+    let found = scene.found(from, to);
+    let places = scene.points.iter().zip(&found.shifts).map(|(point, &shift)| (point.place, shift)).collect();
+    Displaced { places, related: scene.related(&found) }
+}
+
 /// Finds the points of strokes of the drawing `from` on the drawing `to`.
 pub fn register(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> Registered {
     let scene = Scene::new(strokes, from.unit);
-    let ink = |drawing: &Drawing| of_ink(drawing, scene.step, scene.many);
-    let (here, there) = (ink(from), ink(to));
-    let mut found = Round::still(&scene);
-    if !there.is_empty() {
-        for round in 0..2 {
-            found = scene.round(round, &here, &there, &found.shifts);
-        }
-    }
-    let related = found.related || scene.points.len() < FEWEST;
-    Registered { related, ..scene.registered(strokes, &found) }
+    let found = scene.found(from, to);
+    Registered { related: scene.related(&found), ..scene.registered(strokes, &found) }
 }
 
 impl Scene {
@@ -173,6 +184,24 @@ impl Scene {
         self.ties.extend(across.into_iter().flatten());
         self.ties.sort_by_key(|tie| (tie.a, tie.b));
         self.ties.dedup_by_key(|tie| (tie.a, tie.b));
+    }
+
+    /// Both rounds.
+    fn found(&self, from: &Drawing, to: &Drawing) -> Round {
+        let ink = |drawing: &Drawing| of_ink(drawing, self.step, self.many);
+        let (here, there) = (ink(from), ink(to));
+        let mut found = Round::still(self);
+        if !there.is_empty() {
+            for round in 0..2 {
+                found = self.round(round, &here, &there, &found.shifts);
+            }
+        }
+        found
+    }
+
+    /// Whether the drawings show the same thing, as far as a few points can tell.
+    fn related(&self, found: &Round) -> bool {
+        found.related || self.points.len() < FEWEST
     }
 
     fn round(&self, round: usize, here: &[Sample], there: &[Sample], before: &[Point]) -> Round {

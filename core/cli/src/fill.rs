@@ -1,0 +1,51 @@
+//! `rototoon fill`: line drawings painted by clicks on one of them.
+
+use crate::failure::{Failure, line};
+use crate::{arguments, progress, project, render};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::lines::{Options, Style};
+use rototoon::pipeline;
+use rototoon::project::output::check_writable;
+use rototoon::scene::FrameNumber;
+use rototoon::scene::parameters::Stage;
+use std::ops::RangeInclusive;
+
+/// The subcommand.
+pub fn command() -> Command {
+    Command::new("fill")
+        .about(
+            "Paints line drawings: a painter clicked into the regions of one frame or more, and every region of all other \
+             frames gets its colour",
+        )
+        .arg(arguments::project())
+        .arg(arguments::output("OUT", "The document to write, with painted regions in its field \"filled\""))
+        .arg(
+            Arg::new("frames")
+                .long("frames")
+                .value_name("A-B")
+                .help("First and last frame, or one frame [default: all frames of the footage]")
+                .allow_hyphen_values(true)
+                .value_parser(render::range),
+        )
+        .arg(arguments::sensitivity())
+        .args(arguments::of_stage(Stage::Run))
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let mut document = project::load_drawn(from)?;
+    project::inputs(&document, from).check(to)?;
+    check_writable(to)?;
+    let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
+    let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
+    let options = Options { style: Style::Auto, sensitivity };
+    let (document, report) = progress::run(arguments::threads(given), |bar| {
+        let report = pipeline::fill(&mut document, project::folder(from), frames, &options, bar)
+            .map_err(|error| Failure::of(error, from))?;
+        Ok((document, report))
+    })?;
+    project::save(document, from, to)?;
+    report.lines().iter().for_each(|text| line("note", text));
+    Ok(())
+}

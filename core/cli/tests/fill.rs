@@ -1,0 +1,90 @@
+//! Tests of `rototoon fill` from the command line.
+
+use image::{ImageBuffer, Rgb};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A box with a disc in it that move 4 px to the right on each of four frames, as footage of a document with these fields.
+fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    for frame in 0..4u32 {
+        let picture = ImageBuffer::from_fn(160, 120, |x, y| {
+            let (x, y) = (f64::from(x) + 0.5 - 4.0 * f64::from(frame), f64::from(y) + 0.5);
+            let edge = ((x - 60.0).abs().max((y - 60.0).abs()) - 40.0).abs() < 1.5;
+            let disc = ((x - 60.0).hypot(y - 60.0) - 15.0).abs() < 1.5;
+            Rgb([if edge || disc { 20u8 } else { 250 }; 3])
+        });
+        picture.save(folder.path().join(format!("f_{frame:03}.png"))).unwrap();
+    }
+    let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 3, "fps": 12, "width": 160, "height": 120});
+    let mut document = json!({"rototoon": 1, "footage": footage, "parts": [], "note": "kept"});
+    document.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+    let path = folder.path().join("project.json");
+    fs::write(&path, document.to_string()).unwrap();
+    (folder, path)
+}
+
+fn clicks() -> Value {
+    let click = |x: f64, y: f64, colour: [f64; 3]| json!({"at": [x, y], "colour": colour});
+    let regions = [click(5.0, 5.0, [1.0; 3]), click(30.0, 60.0, [0.9, 0.2, 0.1]), click(60.0, 60.0, [0.1, 0.2, 0.9])];
+    json!({"fills": [{"frame": 0, "regions": regions}]})
+}
+
+fn run(command: &str, from: &Path, to: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rototoon")).arg(command).arg(from).arg("-o").arg(to).args(more).output().unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn clicks_paint_every_frame_and_the_svg() {
+    let (folder, path) = project(clicks());
+    let out = folder.path().join("painted.json");
+    let output = run("fill", &path, &out, &[]);
+    assert!(output.status.success(), "{}", told(&output));
+    assert_eq!(told(&output).trim(), "note: 12 regions painted on 4 frames, 0 in doubt", "and no warning of parts");
+    let document: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+    assert_eq!(document["note"], "kept");
+    let filled = document["filled"].as_array().unwrap();
+    assert_eq!(filled.len(), 4);
+    for drawing in filled {
+        let regions = drawing["regions"].as_array().unwrap();
+        let colours: Vec<&Value> = regions.iter().map(|region| &region["colour"]).collect();
+        assert_eq!(colours, [&json!([1.0, 1.0, 1.0]), &json!([0.9, 0.2, 0.1]), &json!([0.1, 0.2, 0.9])]);
+        let tracks: Vec<u64> = regions.iter().map(|region| region["track"].as_u64().unwrap()).collect();
+        assert_eq!(tracks, [0, 1, 2]);
+        assert_eq!(regions[1]["holes"].as_array().unwrap().len(), 1);
+    }
+
+    let picture = folder.path().join("painted.svg");
+    let output = run("export", &out, &picture, &[]);
+    assert!(output.status.success(), "{}", told(&output));
+    let text = fs::read_to_string(picture).unwrap();
+    assert!(text.contains(r##"<path id="fill-2" fill="#1a33e6" fill-rule="evenodd""##), "{text}");
+}
+
+#[test]
+fn a_document_without_clicks_gets_a_message_and_no_file() {
+    let (folder, path) = project(json!({}));
+    let out = folder.path().join("painted.json");
+    let output = run("fill", &path, &out, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).contains("fills: found no click, expected clicks of the paint bucket"), "{}", told(&output));
+    assert!(!out.exists());
+}
+
+#[test]
+fn clicks_that_paint_nothing_are_named() {
+    let mut fields = clicks();
+    let regions = fields["fills"][0]["regions"].as_array_mut().unwrap();
+    regions.push(json!({"at": [400, 3], "colour": [0, 0, 0]}));
+    let (folder, path) = project(fields);
+    let output = run("fill", &path, &folder.path().join("painted.json"), &["--frames", "0-1"]);
+    assert!(output.status.success());
+    let expected = "note: fills[0].regions[3].at lies on a line or outside of the picture, so it paints nothing";
+    assert!(told(&output).contains(expected), "{}", told(&output));
+}

@@ -1,0 +1,133 @@
+//! Regions that leak: two areas of different colours that a gap in a line makes one.
+//!
+//! The painted drawing, carried onto the new one, shows them. If most of two of its regions of different colours comes to lie in one region
+//! there, either one of them vanished behind something, or a line has a gap. A gap is narrow: on the way from the deepest
+//! place of the one to that of the other, a place comes that is nearer to the ink than [`GAP`], and less than half as deep
+//! as both ends. Such a region is [split](crate::regions::Regions::split) there.
+
+use crate::layout::Layout;
+use crate::page::Paint;
+use crate::shifts::Shifts;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::Raster;
+use rototoon_lines::ink::distance;
+use std::collections::{BTreeMap, BinaryHeap};
+
+/// Half the width of the widest gap, in pixels at 540 lines.
+const GAP: f64 = 5.0;
+/// Share of a region that must come to lie in the one that leaks.
+const MOST: f64 = 0.7;
+/// Smallest area of it there, in pixels at 540 lines.
+const LEAST: f64 = 150.0;
+
+/// A cell and how deep it is.
+type Deep = (f32, usize);
+
+/// The regions of `to` that leak, each with the places in pixels between which it is to be split. `back` are the shifts from `to` to
+/// the drawing `from`, which is painted by `paint`.
+pub fn leaks(from: &Layout, paint: &Paint, to: &Layout, back: &Shifts) -> Vec<(usize, Vec<Point>)> {
+    let (width, height) = (to.inside.width(), to.inside.height());
+    let seen = Raster::from_fn(width, height, |x, y| from.nearest_at(back.carry(to.place(x, y))));
+    let mut came: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    let mut whole = vec![0.0f64; from.figures.len()];
+    for (&region, &source) in to.inside.data().iter().zip(seen.data()).filter(|cell| *cell.0 > 0) {
+        *came.entry((region as usize, source as usize)).or_default() += 1.0;
+        whole[source as usize] += 1.0;
+    }
+    let least = LEAST * to.unit * to.unit;
+    let mut within: BTreeMap<usize, Vec<(usize, usize, f64)>> = BTreeMap::new();
+    for (&(region, source), &area) in &came {
+        if let Some(colour) = paint.colour(source).filter(|_| area >= least && area >= MOST * whole[source]) {
+            within.entry(region).or_default().push((colour, source, area));
+        }
+    }
+    let mixed = within.into_iter().filter(|(_, own)| own.iter().any(|other| other.0 != own[0].0));
+    mixed.filter_map(|(region, own)| Some((region, places(region, &own, to, &seen)?))).collect()
+}
+
+/// The places between which a region is split: the deepest one of each of its areas that a gap parts from the largest.
+fn places(region: usize, own: &[(usize, usize, f64)], to: &Layout, seen: &Raster<u32>) -> Option<Vec<Point>> {
+    let mask = to.inside.map(|label| label as usize == region);
+    let depth = distance::inside(&mask);
+    let deepest = |source: usize| -> Option<Deep> {
+        let cells = (0..seen.data().len()).filter(|&at| mask.data()[at] && seen.data()[at] as usize == source);
+        cells.map(|at| (depth.data()[at], at)).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
+    };
+    let &(main, largest, _) = own.iter().max_by(|a, b| a.2.total_cmp(&b.2).then(b.1.cmp(&a.1)))?;
+    let start = deepest(largest)?;
+    let levels = levels(&depth, start.1);
+    let narrow = |end: Deep| {
+        let level = levels[end.1];
+        f64::from(level) <= GAP * to.unit && level < 0.5 * start.0.min(end.0)
+    };
+    let others = own.iter().filter(|other| other.0 != main).filter_map(|other| deepest(other.1));
+    let ends: Vec<Deep> = others.filter(|&end| narrow(end)).collect();
+    let place = |at: usize| to.place(at % seen.width(), at / seen.width());
+    (!ends.is_empty()).then(|| [start].iter().chain(&ends).map(|end| place(end.1)).collect())
+}
+
+/// For each cell the depth of the shallowest cell on the deepest way to it from a start; 0 where there is no way.
+fn levels(depth: &Raster<f32>, start: usize) -> Vec<f32> {
+    let (width, height) = (depth.width(), depth.height());
+    let mut levels = vec![0.0f32; width * height];
+    // Depths are ordered by their bits, since they are positive.
+    let mut front = BinaryHeap::from([(depth.data()[start].to_bits(), start)]);
+    while let Some((level, at)) = front.pop() {
+        let level = f32::from_bits(level);
+        if levels[at] >= level {
+            continue;
+        }
+        levels[at] = level;
+        for next in crate::regions::sides(at, width, height) {
+            let way = level.min(depth.data()[next]);
+            if way > levels[next] {
+                front.push((way.to_bits(), next));
+            }
+        }
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::Paint;
+    use crate::regions::Regions;
+
+    /// Two rooms of 540 lines; the wall between them has a door of a height.
+    fn rooms(door: usize) -> Layout {
+        let ink = Raster::from_fn(400, 540, |x, y| {
+            let outer = x.abs_diff(200).max(y.abs_diff(270)) == 150;
+            outer || (x == 200 && y.abs_diff(270) < 150 && 2 * y.abs_diff(270) >= door)
+        });
+        Layout::new(&Regions::new(&ink))
+    }
+
+    fn painted(layout: &Layout) -> Paint {
+        let mut paint = Paint::nothing(layout.figures.len() - 1, 3);
+        (1..layout.figures.len()).for_each(|region| paint.colours[region][region - 1] = 1.0);
+        paint
+    }
+
+    #[test]
+    fn a_room_with_a_narrow_door_is_split_and_one_with_a_wide_door_is_not() {
+        let closed = rooms(0);
+        assert_eq!(closed.figures.len(), 4, "outside and two rooms");
+        let (paint, still) = (painted(&closed), Shifts::new(&[], 400, 540, 1.0));
+        let found = leaks(&closed, &paint, &rooms(6), &still);
+        assert_eq!(found.len(), 1);
+        let (region, places) = &found[0];
+        assert_eq!((*region, places.len()), (2, 2));
+        assert!((places[0].x < 200.0) != (places[1].x < 200.0), "one place in each room: {places:?}");
+        assert!(leaks(&closed, &paint, &rooms(120), &still).is_empty(), "a wide opening is no gap");
+        assert!(leaks(&closed, &paint, &closed, &still).is_empty());
+    }
+
+    #[test]
+    fn rooms_of_one_colour_stay_together() {
+        let closed = rooms(0);
+        let mut paint = painted(&closed);
+        paint.colours[3] = paint.colours[2].clone();
+        assert!(leaks(&closed, &paint, &rooms(6), &Shifts::new(&[], 400, 540, 1.0)).is_empty());
+    }
+}

@@ -1,0 +1,183 @@
+//! A drawing that is to be painted: its regions, its lines, and what is known about its colours.
+
+use crate::layout::Layout;
+use crate::meet::Table;
+use crate::regions::Regions;
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Colour, Raster};
+use rototoon_lines::{Drawing, Options, Stroke, ink};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// A drawing with its regions.
+pub struct Page {
+    pub(crate) lines: Drawing,
+    pub(crate) strokes: Vec<Stroke>,
+    pub(crate) regions: Regions,
+    pub(crate) layout: Layout,
+}
+
+/// A place in a region, in pixels, and the number of its colour in a palette: a click with the paint bucket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Click {
+    /// The place.
+    pub at: Point,
+    /// The colour's number.
+    pub colour: usize,
+}
+
+/// The colours of a page's regions.
+#[derive(Clone, Debug)]
+pub struct Paint {
+    /// For each region the probability of each colour of the palette. The sum is 1, or 0 where nothing is painted.
+    pub(crate) colours: Table,
+    /// For each region its number on all drawings.
+    pub(crate) tracks: Vec<Option<usize>>,
+    /// For each region the probability that its most probable colour is right.
+    pub(crate) confidence: Vec<f64>,
+    /// Share of the regions in which an artist clicked.
+    pub(crate) clicked: f64,
+}
+
+impl Page {
+    /// Finds the regions of a picture.
+    pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
+        let regions = Regions::new(&ink::measure(&picture, options.sensitivity).mask);
+        let layout = Layout::new(&regions);
+        let lines = Drawing::new(picture, options);
+        Self { strokes: lines.strokes(), lines, regions, layout }
+    }
+
+    /// The number of regions.
+    pub fn regions(&self) -> usize {
+        self.regions.count
+    }
+
+    /// Paints the page by clicks. A region with clicks of several colours is [split](Regions::split) between them. Regions get
+    /// numbers from `next` on, in the order of the clicks, and `next` is raised. The second value lists the clicks that lie
+    /// on ink or outside of the picture and so paint nothing.
+    pub fn painted(&mut self, clicks: &[Click], palette: usize, next: &mut usize) -> (Paint, Vec<usize>) {
+        self.split(clicks);
+        let paint = Paint::nothing(self.regions.count, palette);
+        self.clicked(paint, clicks, next)
+    }
+
+    /// Clicks into a page whose regions have colours already. What was not clicked stays. The page must have been
+    /// [split](Self::split) by the clicks before it was painted. A region whose colour changes gets a new number.
+    pub fn clicked(&self, mut paint: Paint, clicks: &[Click], next: &mut usize) -> (Paint, Vec<usize>) {
+        let palette = paint.colours[0].len();
+        let mut missed = Vec::new();
+        let mut own = BTreeSet::new();
+        for (k, click) in clicks.iter().enumerate() {
+            let Some(region) = self.regions.at(click.at).filter(|_| click.colour < palette) else {
+                missed.push(k);
+                continue;
+            };
+            if paint.tracks[region].is_none() || paint.colour(region) != Some(click.colour) {
+                paint.tracks[region] = Some(*next);
+                *next += 1;
+            }
+            paint.colours[region].fill(0.0);
+            paint.colours[region][click.colour] = 1.0;
+            paint.confidence[region] = 1.0;
+            own.insert(region);
+        }
+        paint.clicked = own.len() as f64 / self.regions.count.max(1) as f64;
+        (paint, missed)
+    }
+
+    /// Splits regions between places.
+    pub(crate) fn close(&mut self, leaks: &[(usize, Vec<Point>)]) {
+        leaks.iter().for_each(|(region, places)| self.regions.split(*region, places));
+        if !leaks.is_empty() {
+            self.layout = Layout::new(&self.regions);
+        }
+    }
+
+    /// Splits regions in which clicks have different colours, so that each click has a region of its own.
+    pub fn split(&mut self, clicks: &[Click]) {
+        let mut within: BTreeMap<usize, Vec<Click>> = BTreeMap::new();
+        for click in clicks {
+            if let Some(region) = self.regions.at(click.at) {
+                within.entry(region).or_default().push(*click);
+            }
+        }
+        let mixed = |own: &&Vec<Click>| own.iter().any(|click| click.colour != own[0].colour);
+        let mut split = false;
+        for (region, own) in within.iter().filter(|(_, own)| mixed(own)) {
+            self.regions.split(*region, &own.iter().map(|click| click.at).collect::<Vec<_>>());
+            split = true;
+        }
+        if split {
+            self.layout = Layout::new(&self.regions);
+        }
+    }
+}
+
+impl Paint {
+    /// Nothing is painted.
+    pub(crate) fn nothing(regions: usize, palette: usize) -> Self {
+        Self {
+            colours: vec![vec![0.0; palette]; regions + 1],
+            tracks: vec![None; regions + 1],
+            confidence: vec![0.0; regions + 1],
+            clicked: 0.0,
+        }
+    }
+
+    /// The share of the regions in which an artist clicked, 0 to 1.
+    pub fn clicked(&self) -> f64 {
+        self.clicked
+    }
+
+    /// The most probable colour of a region.
+    pub(crate) fn colour(&self, region: usize) -> Option<usize> {
+        let row = &self.colours[region];
+        // Of equal ones the first is taken.
+        let best = (0..row.len()).rev().max_by(|&a, &b| row[a].total_cmp(&row[b]))?;
+        (row[best] > 0.0).then_some(best)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box with a wall that has a gap.
+    fn page() -> Page {
+        let line = |x: usize, y: usize| {
+            let edge = x.abs_diff(60).max(y.abs_diff(40)) == 30;
+            edge || (x == 60 && (12..68).contains(&y) && !(38..42).contains(&y))
+        };
+        let ink = |x: usize, y: usize| (0..2).any(|u| (0..2).any(|v| x >= u && y >= v && line(x - u, y - v)));
+        let picture = Raster::from_fn(121, 81, |x, y| if ink(x, y) { [0.05; 3] } else { [1.0; 3] });
+        Page::new(Arc::new(picture), &Options::default())
+    }
+
+    #[test]
+    fn clicks_of_two_colours_split_a_region_that_leaks() {
+        let click = |x: f64, colour: usize| Click { at: Point::new(x, 30.0), colour };
+        let mut page = page();
+        let whole = page.regions();
+        let mut next = 5;
+        let (paint, missed) = page.painted(&[click(40.0, 1), click(80.0, 0), click(10.0, 0)], 2, &mut next);
+        assert_eq!((page.regions(), missed.len(), next), (whole + 1, 0, 8));
+        let at = |x: f64, y: f64| page.regions.at(Point::new(x, y)).and_then(|region| paint.colour(region));
+        assert_eq!((at(50.0, 60.0), at(75.0, 60.0), at(5.0, 5.0)), (Some(1), Some(0), Some(0)));
+    }
+
+    #[test]
+    fn clicks_outside_of_the_picture_are_told() {
+        let mut page = page();
+        let (_, missed) = page.painted(&[Click { at: Point::new(500.0, 3.0), colour: 0 }], 1, &mut 0);
+        assert_eq!(missed, [0]);
+    }
+
+    #[test]
+    fn of_equal_colours_the_first_is_taken() {
+        let mut paint = Paint::nothing(1, 3);
+        assert_eq!(paint.colour(1), None);
+        paint.colours[1] = vec![0.2, 0.4, 0.4];
+        assert_eq!(paint.colour(1), Some(1));
+    }
+}

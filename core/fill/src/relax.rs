@@ -1,0 +1,136 @@
+//! Who is who, by the company that regions keep.
+//!
+//! A region that was carried to the wrong place still lies among the same neighbours: a pupil in the white of an eye, a cuff between sleeve and
+//! hand. With M the probability that region j is region i, and h_j(k) the share of its border that j has with regions that are k by M,
+//! a pair agrees by Σ_k min(h_j(k), h_i(k)), from 0 to 1. So it does by colours, with the colours of k in place of k itself. Then
+//!
+//! u' = u exp(6 (agreement by regions + agreement by colours)),   M = u' ∕ Σ u'
+//!
+//! is repeated five times (relaxation labelling; Rosenfeld, Hummel & Zucker 1976). The edge of the picture is a neighbour too.
+
+use crate::layout::Layout;
+use crate::meet::Table;
+use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
+
+/// Strength of both agreements.
+const STRENGTH: f32 = 6.0;
+/// Rounds.
+const ROUNDS: usize = 5;
+
+/// How regions meet after they looked at their neighbours.
+pub struct Relaxed {
+    /// u' of each pair.
+    pub all: Table,
+    /// The probability of each pair: the rows of u', each with the sum of 1.
+    pub sure: Table,
+}
+
+/// Relaxes how the regions of `to` meet those of `from`, whose colours are given by probabilities: a row for each region.
+pub fn relax(from: &Layout, to: &Layout, meeting: &Table, colours: &Table) -> Relaxed {
+    let seen: Table = from.borders.par_iter().map(|own| of_colours(own, colours)).collect();
+    let mut all = meeting.clone();
+    let mut sure = normalised(&all);
+    for _ in 0..ROUNDS {
+        let relaxed = (0..meeting.len()).into_par_iter().map(|j| {
+            let around = around(&to.borders[j], &sure, from.borders.len());
+            let colours = around_colours(&around, colours);
+            let agree = |i: usize| {
+                let regions: f32 = from.borders[i].iter().map(|&(k, share)| share.min(around[k])).sum();
+                let colours: f32 = seen[i].iter().zip(&colours).map(|(a, b)| a.min(*b)).sum();
+                // The edge has no colour, but is as good as one.
+                let edge = from.borders[i].first().filter(|own| own.0 == 0).map_or(0.0, |own| own.1.min(around[0]));
+                regions + colours + edge
+            };
+            let row = &meeting[j];
+            row.iter().enumerate().map(|(i, u)| if *u > 0.0 { u * (STRENGTH * agree(i)).exp() } else { 0.0 }).collect()
+        });
+        all = relaxed.collect();
+        sure = normalised(&all);
+    }
+    Relaxed { all, sure }
+}
+
+fn normalised(table: &Table) -> Table {
+    let row = |row: &Vec<f32>| {
+        let total = row.iter().sum::<f32>().max(1e-30);
+        row.iter().map(|value| value / total).collect()
+    };
+    table.par_iter().map(row).collect()
+}
+
+/// The colours of which a border consists.
+fn of_colours(border: &[(usize, f32)], colours: &Table) -> Vec<f32> {
+    let mut out = vec![0.0; colours.first().map_or(0, Vec::len)];
+    for &(other, share) in border.iter().filter(|own| own.0 > 0) {
+        out.iter_mut().zip(&colours[other]).for_each(|(sum, own)| *sum += share * own);
+    }
+    out
+}
+
+/// The regions of the other drawing of which a border consists.
+fn around(border: &[(usize, f32)], sure: &Table, count: usize) -> Vec<f32> {
+    let mut out = vec![0.0; count];
+    for &(other, share) in border {
+        match other {
+            0 => out[0] += share,
+            _ => out.iter_mut().zip(&sure[other]).for_each(|(sum, own)| *sum += share * own),
+        }
+    }
+    out
+}
+
+/// The colours of the regions of which a border consists.
+fn around_colours(around: &[f32], colours: &Table) -> Vec<f32> {
+    let mut out = vec![0.0; colours.first().map_or(0, Vec::len)];
+    for (share, own) in around.iter().zip(colours).skip(1).filter(|found| *found.0 > 0.0) {
+        out.iter_mut().zip(own).for_each(|(sum, colour)| *sum += share * colour);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::regions::Regions;
+    use rototoon_base::geometry::Point;
+    use rototoon_base::scene::Raster;
+
+    /// A ring with a disc in it, and a disc alone.
+    fn layout(swapped: bool) -> Layout {
+        let circle = |x: f64, radius: f64, at: Point| (at.distance(Point::new(x, 30.0)) - radius).abs() < 0.8;
+        let (ring, alone) = if swapped { (90.0, 30.0) } else { (30.0, 90.0) };
+        let ink = Raster::from_fn(120, 60, |x, y| {
+            let at = Point::new(x as f64, y as f64);
+            circle(ring, 20.0, at) || circle(ring, 8.0, at) || circle(alone, 8.0, at)
+        });
+        Layout::new(&Regions::new(&ink))
+    }
+
+    #[test]
+    fn a_disc_is_known_by_the_ring_around_it() {
+        let (before, after) = (layout(false), layout(true));
+        let named = |layout: &Layout| {
+            // By area: paper, ring; the discs by what they border on.
+            let mut order: Vec<usize> = (1..layout.figures.len()).collect();
+            order.sort_by(|&a, &b| layout.figures[b].area.total_cmp(&layout.figures[a].area));
+            let (paper, ring) = (order[0], order[1]);
+            let inner = *order[2..].iter().find(|&&k| layout.borders[k].iter().any(|own| own.0 == ring)).unwrap();
+            let alone = *order[2..].iter().find(|&&k| k != inner).unwrap();
+            [paper, ring, inner, alone]
+        };
+        let (a, b) = (named(&before), named(&after));
+        // Nothing but the areas of paper and ring is known; the discs meet equally.
+        let mut meeting = vec![vec![0.0; 5]; 5];
+        for (&j, &i) in b.iter().zip(&a) {
+            a.iter().for_each(|&other| meeting[j][other] = 0.1);
+            if j == b[0] || j == b[1] {
+                meeting[j][i] = 1.0;
+            }
+        }
+        let colours = vec![vec![0.0; 0]; 5];
+        let relaxed = relax(&before, &after, &meeting, &colours);
+        for k in 0..4 {
+            assert!(relaxed.sure[b[k]][a[k]] > 0.75, "{k}: {:?}", relaxed.sure[b[k]]);
+        }
+    }
+}

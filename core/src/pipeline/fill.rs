@@ -1,0 +1,314 @@
+//! Colours of line drawings: from the painter's clicks to the regions of every frame.
+//!
+//! Work begins on the first frame with clicks. From there the colours go from drawing to drawing, forwards and backwards. Each
+//! drawing is painted by the last one, by the frame with clicks that it comes from, and by the next one with clicks if at least half of the
+//! regions were clicked there. Clicks on a later frame overrule what was carried there, and what follows comes from them: so
+//! a mistake is mended by one click.
+
+#[cfg(test)]
+mod tests;
+
+use super::{PipelineError, frames, frames_of};
+use crate::export::SvgFill;
+use crate::fill::{Click, Page, Paint, Source, carry, fills};
+use crate::lines::Options;
+use crate::project::Document;
+use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
+use crate::scene::{Colour, FrameNumber, FrameSource, Progress, Raster};
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Share of a frame's regions that must be clicked so that it counts for frames before it.
+const WHOLE: f64 = 0.5;
+/// Confidence below which a region is in doubt.
+const DOUBT: f64 = 0.5;
+
+/// What became of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilledFrame {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// The number of painted regions.
+    pub regions: usize,
+    /// The number of regions whose colour is probably wrong: their confidence is below 0.5.
+    pub doubtful: usize,
+    /// Whether the drawing shows the same as a painted one. If not, nothing is painted.
+    pub related: bool,
+}
+
+/// What became of all frames.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FillReport {
+    /// The frames, in order.
+    pub frames: Vec<FilledFrame>,
+    /// Clicks that paint nothing: their places in the document.
+    pub missed: Vec<String>,
+}
+
+impl FillReport {
+    /// What a person is told, a line each.
+    pub fn lines(&self) -> Vec<String> {
+        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let named = |frames: Vec<FrameNumber>| frames.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let regions = self.frames.iter().map(|frame| frame.regions).sum();
+        let doubtful: usize = self.frames.iter().map(|frame| frame.doubtful).sum();
+        let frames = counted(self.frames.len(), "frame");
+        let mut lines = vec![format!("{} painted on {frames}, {doubtful} in doubt", counted(regions, "region"))];
+        let mut worst: Vec<&FilledFrame> = self.frames.iter().filter(|frame| frame.doubtful > 0).collect();
+        worst.sort_by_key(|frame| (std::cmp::Reverse(frame.doubtful), frame.frame));
+        if let Some(worst) = worst.first() {
+            lines.push(format!("most doubts on frame {}: {}", worst.frame, counted(worst.doubtful, "region")));
+        }
+        let other: Vec<FrameNumber> = self.frames.iter().filter(|f| !f.related).map(|f| f.frame).collect();
+        if !other.is_empty() {
+            lines.push(format!("not painted, since no painted drawing shows the same: frame {}", named(other)));
+        }
+        lines.extend(
+            self.missed
+                .iter()
+                .map(|place| format!("{place} lies on a line or outside of the picture, so it paints nothing")),
+        );
+        lines
+    }
+}
+
+/// Paints the drawings of a document in `folder` by the clicks in its field `fills`, and puts the regions into its field `filled`. It runs on
+/// the caller's rayon pool; the result does not depend on the pool. Painted regions of frames outside of `range` (the
+/// complete footage where it is `None`) stay.
+///
+/// # Errors
+///
+/// [`PipelineError::Option`] for a range outside of the footage; [`PipelineError::Field`] for a document without clicks, for clicks outside of the
+/// footage and for fields that cannot be read; an unreadable frame; not enough memory; or [`PipelineError::Cancelled`].
+pub fn fill(
+    document: &mut Document,
+    folder: &Path,
+    range: Option<RangeInclusive<FrameNumber>>,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<FillReport, PipelineError> {
+    let footage = &document.scene.footage;
+    let range = frames_of(footage, range)?;
+    let clicks = document.fills().map_err(|error| field(&error))?;
+    if let Some((k, found)) = clicks.iter().enumerate().find(|(_, c)| c.frame < footage.first || c.frame > footage.last)
+    {
+        let found = found.frame;
+        let (a, b) = (footage.first, footage.last);
+        return Err(field(&format!("fills[{k}].frame: found {found}, expected a frame of the footage, {a} to {b}")));
+    }
+    let clicks: Vec<(usize, FillClicks)> =
+        clicks.into_iter().enumerate().filter(|own| !own.1.clicks.is_empty()).collect();
+    if clicks.is_empty() {
+        let expected = r#"clicks of the paint bucket on a frame: "fills": [{"frame": 0, "regions": [{"at": [x, y], "colour": [r, g, b]}, …]}]"#;
+        return Err(field(&format!("fills: found no click, expected {expected}")));
+    }
+    super::memory::to_fill(footage)?;
+    let earlier = document.filled().map_err(|error| field(&error))?;
+    let sequence = frames(document, folder)?;
+    let first = clicks[0].1.frame;
+    let all = (first.min(*range.start())..=first.max(*range.end())).count();
+    let mut painting = Painting {
+        frames: &sequence,
+        options,
+        progress,
+        palette: palette(&clicks),
+        next: 0,
+        all: all + clicks.len(),
+        done: 0,
+        found: Vec::new(),
+        report: FillReport::default(),
+    };
+    painting.run(&clicks, &range)?;
+    let Painting { mut found, mut report, .. } = painting;
+    found.retain(|drawing| range.contains(&drawing.frame));
+    found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
+    found.sort_by_key(|drawing| drawing.frame);
+    report.frames.retain(|frame| range.contains(&frame.frame));
+    report.frames.sort_by_key(|frame| frame.frame);
+    document.set_filled(&found);
+    Ok(report)
+}
+
+/// The error of a field.
+fn field(error: &dyn std::fmt::Display) -> PipelineError {
+    PipelineError::Field(error.to_string())
+}
+
+/// The painted regions of a document, one for each number.
+pub(super) fn fills_to_export(document: &Document) -> Result<Vec<SvgFill>, PipelineError> {
+    let filled = document.filled().map_err(|error| field(&error))?;
+    let mut fills: BTreeMap<usize, SvgFill> = BTreeMap::new();
+    for (frame, region) in filled.into_iter().flat_map(|d| d.regions.into_iter().map(move |region| (d.frame, region))) {
+        let FilledRegion { track, colour, outline, holes, .. } = region;
+        let own = fills.entry(track).or_insert_with(|| SvgFill { track, colour, ..SvgFill::default() });
+        own.outlines.insert(frame, [outline].into_iter().chain(holes).collect());
+    }
+    Ok(fills.into_values().collect())
+}
+
+/// All colours, each once, in the order in which they come.
+fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Colour> {
+    let mut palette: Vec<Colour> = Vec::new();
+    for click in clicks.iter().flat_map(|own| &own.1.clicks) {
+        if !palette.contains(&click.colour) {
+            palette.push(click.colour);
+        }
+    }
+    palette
+}
+
+/// A painted drawing.
+#[derive(Clone)]
+struct Painted {
+    frame: FrameNumber,
+    picture: Arc<Raster<Colour>>,
+    page: Arc<Page>,
+    paint: Paint,
+}
+
+/// Painting at work.
+struct Painting<'a> {
+    frames: &'a dyn FrameSource,
+    options: &'a Options,
+    progress: &'a dyn Progress,
+    palette: Vec<Colour>,
+    /// The next new number of a region.
+    next: usize,
+    all: usize,
+    done: usize,
+    found: Vec<FilledDrawing>,
+    report: FillReport,
+}
+
+impl Painting<'_> {
+    fn run(
+        &mut self,
+        clicks: &[(usize, FillClicks)],
+        range: &RangeInclusive<FrameNumber>,
+    ) -> Result<(), PipelineError> {
+        let mut key = self.key(&clicks[0])?;
+        self.keep(&key);
+        self.outward(&key, (*range.start()..key.frame).rev(), None)?;
+        for later in &clicks[1..] {
+            if key.frame >= *range.end() {
+                return Ok(());
+            }
+            let next = Some(self.key(later)?).filter(|next| next.paint.clicked() >= WHOLE);
+            let last = self.outward(&key, key.frame + 1..later.1.frame, next.as_ref())?;
+            key = self.mended(&key, &last, later)?;
+            self.keep(&key);
+        }
+        self.outward(&key, key.frame + 1..=*range.end(), None)?;
+        Ok(self.progress.report("Painting", 1.0)?)
+    }
+
+    /// A frame painted by its clicks alone.
+    fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<Painted, PipelineError> {
+        let (picture, mut page) = self.look(clicks.1.frame)?;
+        let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
+        if self.found.is_empty() {
+            self.miss(clicks.0, &missed);
+        }
+        Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
+    }
+
+    /// A frame painted by what comes before it, and then by its own clicks.
+    fn mended(
+        &mut self,
+        key: &Painted,
+        last: &Painted,
+        clicks: &(usize, FillClicks),
+    ) -> Result<Painted, PipelineError> {
+        let (picture, mut page) = self.look(clicks.1.frame)?;
+        let own = self.clicks(&clicks.1);
+        page.split(&own);
+        let carried = carry(&sources(key, last, None), &mut page, &mut self.next);
+        let (paint, missed) = match carried {
+            Some(paint) => page.clicked(paint, &own, &mut self.next),
+            None => page.painted(&own, self.palette.len(), &mut self.next),
+        };
+        self.miss(clicks.0, &missed);
+        Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
+    }
+
+    /// Paints frames one after the other, beginning beside a frame with clicks. Returns the last painted drawing.
+    fn outward(
+        &mut self,
+        key: &Painted,
+        frames: impl Iterator<Item = FrameNumber>,
+        next: Option<&Painted>,
+    ) -> Result<Painted, PipelineError> {
+        let mut last = key.clone();
+        for frame in frames {
+            let picture = self.frames.picture(frame)?;
+            if picture.data() == last.picture.data() {
+                self.progress()?;
+                last.frame = frame;
+                self.keep(&last);
+                continue;
+            }
+            let (picture, mut page) = self.look(frame)?;
+            match carry(&sources(key, &last, next), &mut page, &mut self.next) {
+                Some(paint) => {
+                    last = Painted { frame, picture, page: page.into(), paint };
+                    self.keep(&last);
+                }
+                None => self.report.frames.push(FilledFrame { frame, ..FilledFrame::default() }),
+            }
+        }
+        Ok(last)
+    }
+
+    fn look(&mut self, frame: FrameNumber) -> Result<(Arc<Raster<Colour>>, Page), PipelineError> {
+        self.progress()?;
+        let picture = self.frames.picture(frame)?;
+        Ok((picture.clone(), Page::new(picture, self.options)))
+    }
+
+    fn progress(&mut self) -> Result<(), PipelineError> {
+        self.progress.report("Painting", (self.done as f64 / self.all.max(1) as f64).min(1.0))?;
+        self.done += 1;
+        Ok(())
+    }
+
+    fn clicks(&self, clicks: &FillClicks) -> Vec<Click> {
+        let number = |colour: &Colour| self.palette.iter().position(|own| own == colour).unwrap_or_default();
+        clicks.clicks.iter().map(|click| Click { at: click.at, colour: number(&click.colour) }).collect()
+    }
+
+    fn miss(&mut self, entry: usize, missed: &[usize]) {
+        self.report.missed.extend(missed.iter().map(|k| format!("fills[{entry}].regions[{k}].at")));
+    }
+
+    /// Puts a painted drawing down.
+    fn keep(&mut self, painted: &Painted) {
+        let region = |fill: crate::fill::Fill| FilledRegion {
+            colour: self.palette[fill.colour],
+            outline: fill.outline,
+            holes: fill.holes,
+            track: fill.track,
+            confidence: fill.confidence,
+        };
+        let regions: Vec<FilledRegion> = fills(&painted.page, &painted.paint).into_iter().map(region).collect();
+        let doubtful = regions.iter().filter(|region| region.confidence < DOUBT).count();
+        let frame = painted.frame;
+        self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related: true });
+        self.found.push(FilledDrawing { frame, regions });
+    }
+}
+
+/// The sources of a drawing. The last one gives the numbers.
+fn sources<'a>(key: &'a Painted, last: &'a Painted, next: Option<&'a Painted>) -> Vec<Source<'a>> {
+    let source = |painted: &'a Painted, own: bool| Source { page: &painted.page, paint: &painted.paint, own };
+    let mut sources = vec![source(key, true)];
+    sources.extend(next.map(|next| source(next, true)));
+    if !Arc::ptr_eq(&last.page, &key.page) {
+        sources.push(source(last, false));
+    } else if next.is_some() {
+        // The numbers are those of the frame before, not of the next one.
+        sources.swap(0, 1);
+    }
+    sources
+}

@@ -1,0 +1,197 @@
+use super::*;
+use crate::geometry::{Point, polygon};
+use crate::project::fills::FillClick;
+use crate::render::{Format, encode};
+use crate::scene::{Footage, Scene, Silent};
+
+const PAPER: Colour = [0.9, 0.9, 1.0];
+const RED: Colour = [1.0, 0.0, 0.0];
+const BLUE: Colour = [0.0, 0.0, 1.0];
+
+/// A film of drawings: `ink` gives the distance of a place from the nearest line of a frame.
+struct Film {
+    folder: tempfile::TempDir,
+    document: Document,
+}
+
+impl Film {
+    fn new(last: FrameNumber, ink: impl Fn(FrameNumber, Point) -> f64) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        for frame in 0..=last {
+            let shade = |x: usize, y: usize| {
+                let away = ink(frame, Point::new(x as f64 + 0.5, y as f64 + 0.5));
+                [(away as f32 - 0.7).clamp(0.05, 1.0); 3]
+            };
+            let bytes = encode::colours(&Raster::from_fn(200, 150, shade), Format::Png).unwrap();
+            std::fs::write(folder.path().join(format!("{frame:02}.png")), bytes).unwrap();
+        }
+        let footage = Footage { pattern: "%02d.png".into(), first: 0, last, fps: 12.0, width: 200, height: 150 };
+        Self { folder, document: Document::new(Scene { footage, parts: Vec::new() }) }
+    }
+
+    /// Clicks on frames.
+    fn clicked(mut self, clicks: &[(FrameNumber, &[FillClick])]) -> Self {
+        let entry = |(frame, clicks): &(FrameNumber, &[FillClick])| {
+            let regions: Vec<_> =
+                clicks.iter().map(|c| serde_json::json!({"at": [c.at.x, c.at.y], "colour": c.colour})).collect();
+            serde_json::json!({"frame": frame, "regions": regions})
+        };
+        let fills = serde_json::Value::Array(clicks.iter().map(entry).collect());
+        let text = self.document.to_json();
+        let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        value["fills"] = fills;
+        self.document = Document::parse(&value.to_string(), "film.json").unwrap();
+        self
+    }
+
+    fn fill(&mut self) -> Result<FillReport, PipelineError> {
+        fill(&mut self.document, self.folder.path(), None, &Options::default(), &Silent)
+    }
+
+    /// The painted region at a place.
+    fn at(&self, frame: FrameNumber, place: (f64, f64)) -> Option<FilledRegion> {
+        let place = Point::from(place);
+        let filled = self.document.filled().unwrap();
+        let drawing = filled.iter().find(|drawing| drawing.frame == frame)?;
+        let within = |region: &&FilledRegion| {
+            polygon::contains(&region.outline, place) && !region.holes.iter().any(|hole| polygon::contains(hole, place))
+        };
+        drawing.regions.iter().rev().find(within).cloned()
+    }
+}
+
+fn click(at: (f64, f64), colour: Colour) -> FillClick {
+    FillClick { at: Point::from(at), colour }
+}
+
+/// Distance from the outline of a box.
+fn boxed(p: Point, middle: (f64, f64), half: (f64, f64)) -> f64 {
+    let away = (p - Point::from(middle)).abs() - Point::from(half);
+    let outside = away.max(Point::ZERO).length();
+    (outside + away.max_element().min(0.0)).abs()
+}
+
+fn ring(p: Point, middle: (f64, f64), radius: f64) -> f64 {
+    (p.distance(Point::from(middle)) - radius).abs()
+}
+
+/// A box with a disc in it that moves to the right by 6 px a frame.
+fn moving(frame: FrameNumber, p: Point) -> f64 {
+    let x = 60.0 + 6.0 * f64::from(frame);
+    boxed(p, (x, 75.0), (45.0, 45.0)).min(ring(p, (x, 75.0), 18.0))
+}
+
+fn own_clicks() -> [FillClick; 3] {
+    [click((5.0, 5.0), PAPER), click((25.0, 75.0), RED), click((60.0, 75.0), BLUE)]
+}
+
+#[test]
+fn every_region_of_a_film_has_its_colour_and_its_number() {
+    let mut film = Film::new(4, moving).clicked(&[(0, &own_clicks())]);
+    let report = film.fill().unwrap();
+    assert_eq!(report.frames.len(), 5);
+    assert!(report.frames.iter().all(|frame| frame.regions == 3 && frame.doubtful == 0 && frame.related), "{report:?}");
+    for frame in 0..=4 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        let named = [((5.0, 5.0), PAPER, 0), ((x - 35.0, 75.0), RED, 1), ((x, 75.0), BLUE, 2)];
+        for (place, colour, track) in named {
+            let region = film.at(frame, place).unwrap();
+            assert_eq!((region.colour, region.track), (colour, track), "frame {frame}, {place:?}");
+        }
+    }
+    assert_eq!(film.at(0, (60.0, 75.0)).unwrap().confidence, 1.0, "an artist clicked there");
+}
+
+#[test]
+fn work_begins_at_the_clicks_and_goes_both_ways() {
+    let x = 60.0 + 6.0 * 2.0;
+    let clicks = [click((5.0, 5.0), PAPER), click((x - 35.0, 75.0), RED), click((x, 75.0), BLUE)];
+    let mut film = Film::new(4, moving).clicked(&[(2, &clicks)]);
+    film.fill().unwrap();
+    for frame in 0..=4 {
+        assert_eq!(film.at(frame, (60.0 + 6.0 * f64::from(frame), 75.0)).unwrap().colour, BLUE, "frame {frame}");
+    }
+}
+
+#[test]
+fn a_region_that_falls_to_pieces_keeps_its_colour_on_all_of_them() {
+    // A bar comes from above and passes the whole box.
+    let crossed = |frame: FrameNumber, p: Point| {
+        let bar = boxed(p, (100.0, -50.0 + 50.0 * f64::from(frame)), (8.0, 60.0));
+        let inside = (p.x - 100.0).abs() < 8.0 && (p.y - (-50.0 + 50.0 * f64::from(frame))).abs() < 60.0;
+        let behind = if inside { f64::INFINITY } else { boxed(p, (100.0, 80.0), (60.0, 40.0)) };
+        behind.min(bar)
+    };
+    let clicks = [click((3.0, 140.0), PAPER), click((60.0, 80.0), RED), click((100.0, 2.0), BLUE)];
+    let mut film = Film::new(3, crossed).clicked(&[(0, &clicks)]);
+    film.fill().unwrap();
+    let (left, right) = (film.at(3, (60.0, 80.0)).unwrap(), film.at(3, (140.0, 80.0)).unwrap());
+    assert_eq!((left.colour, right.colour), (RED, RED));
+    assert_ne!(left.track, right.track, "a number occurs once on a frame");
+    assert_eq!(film.at(3, (100.0, 80.0)).unwrap().colour, BLUE);
+}
+
+#[test]
+fn a_click_on_a_later_frame_mends_it_and_what_follows() {
+    let later = [click((60.0 + 6.0 * 3.0, 75.0), RED)];
+    let mut film = Film::new(5, moving).clicked(&[(0, &own_clicks()), (3, &later)]);
+    film.fill().unwrap();
+    let disc = |frame: FrameNumber| film.at(frame, (60.0 + 6.0 * f64::from(frame), 75.0)).unwrap();
+    assert_eq!([0, 1, 2, 3, 4, 5].map(|frame| disc(frame).colour), [BLUE, BLUE, BLUE, RED, RED, RED]);
+    assert_eq!(disc(3).confidence, 1.0);
+    assert_ne!(disc(2).track, disc(3).track, "a number has one colour");
+    // What was not clicked there was carried there.
+    assert_eq!(film.at(3, (60.0 + 18.0 - 35.0, 75.0)).unwrap().colour, RED);
+    assert_eq!(film.at(5, (3.0, 3.0)).unwrap().colour, PAPER);
+}
+
+#[test]
+fn a_drawing_with_nothing_in_common_is_not_painted_and_told() {
+    let cut = |frame: FrameNumber, p: Point| match frame {
+        0 => moving(0, p),
+        _ => (0..9)
+            .map(|k| ring(p, (20.0 + 20.0 * f64::from(k), 30.0 + 12.0 * f64::from(k * k % 8)), 7.0))
+            .fold(99.0, f64::min),
+    };
+    let mut film = Film::new(1, cut).clicked(&[(0, &own_clicks())]);
+    let report = film.fill().unwrap();
+    assert!(!report.frames[1].related, "{report:?}");
+    assert!(film.at(1, (5.0, 5.0)).is_none());
+    assert!(report.lines().iter().any(|line| line.ends_with("shows the same: frame 1")), "{:?}", report.lines());
+}
+
+#[test]
+fn other_frames_and_the_document_stay() {
+    let mut film = Film::new(4, moving).clicked(&[(0, &own_clicks())]);
+    film.fill().unwrap();
+    let before = film.document.filled().unwrap();
+    fill(&mut film.document, film.folder.path(), Some(2..=2), &Options::default(), &Silent).unwrap();
+    assert_eq!(film.document.filled().unwrap(), before, "frame 2 is painted as before, and the others are kept");
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let painted = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let mut film = Film::new(3, moving).clicked(&[(0, &own_clicks())]);
+        pool.install(|| film.fill()).unwrap();
+        film.document.to_json()
+    };
+    assert_eq!(painted(1), painted(4));
+}
+
+#[test]
+fn errors_name_the_field() {
+    let told = |mut film: Film| film.fill().unwrap_err().to_string();
+    let film = || Film::new(1, moving);
+    assert!(told(film()).starts_with("fills: found no click, expected clicks of the paint bucket on a frame"));
+    assert_eq!(
+        told(film().clicked(&[(9, &own_clicks())])),
+        "fills[0].frame: found 9, expected a frame of the footage, 0 to 1"
+    );
+    let mut outside = film().clicked(&[(0, &[click((5.0, 5.0), PAPER), click((900.0, 5.0), RED)])]);
+    let report = outside.fill().unwrap();
+    assert_eq!(report.missed, ["fills[0].regions[1].at"]);
+    let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &Options::default(), &Silent);
+    assert_eq!(range.unwrap_err().to_string(), "frames: found 0 to 7, expected frames of the footage, 0 to 1");
+}
