@@ -18,6 +18,8 @@ pub enum Kind {
     Snap,
     /// Traces drawn lines as strokes.
     Trace,
+    /// Paints line drawings by clicks.
+    Fill,
     /// Makes in-betweens.
     Tween,
     /// Draws pictures.
@@ -27,11 +29,12 @@ pub enum Kind {
 }
 
 /// Each kind with its subcommand and the document that it writes; those without one need `to` or write nothing.
-const KINDS: [(Kind, &str, Option<&str>); 7] = [
+const KINDS: [(Kind, &str, Option<&str>); 8] = [
     (Kind::Check, "check", None),
     (Kind::Track, "track", Some("tracked.json")),
     (Kind::Snap, "snap", Some("snapped.json")),
     (Kind::Trace, "trace", Some("traced.json")),
+    (Kind::Fill, "fill", Some("painted.json")),
     (Kind::Tween, "tween", Some("tweened.json")),
     (Kind::Render, "render", None),
     (Kind::Export, "export", None),
@@ -86,7 +89,7 @@ impl Step {
 
     /// Whether it writes a document that later steps read.
     pub fn writes_document(&self) -> bool {
-        matches!(self.kind, Kind::Track | Kind::Snap | Kind::Trace | Kind::Tween)
+        matches!(self.kind, Kind::Track | Kind::Snap | Kind::Trace | Kind::Fill | Kind::Tween)
     }
 
     /// The words of the command that reads `document`. The output's name gets `prefix` before it.
@@ -108,7 +111,7 @@ fn output(kind: Kind, default: Option<&str>, to: Option<&Value>) -> Result<Optio
         Kind::Check => return Ok(None),
         Kind::Render => "matte_%04d.exr",
         Kind::Export => "shapes.svg",
-        Kind::Track | Kind::Snap | Kind::Trace | Kind::Tween => "result.json",
+        Kind::Track | Kind::Snap | Kind::Trace | Kind::Fill | Kind::Tween => "result.json",
     };
     let Some(name) = to.map_or(default, Value::as_str) else {
         return Err(format!("to: found {}, expected the name of what is written, such as {example:?}", described(to)));
@@ -192,6 +195,7 @@ mod tests {
                 json!({"do": "render", "to": "m_%04d.exr", "what": "matte", "layers": true, "parts": ["a", "-b"], "line_width": 1.5}),
                 "render in.json -o .new-m_%04d.exr --what=matte --layers=on --parts=a --parts=-b --line-width=1.5",
             ),
+            (json!({"do": "fill", "sensitivity": 2}), "fill in.json -o .new-painted.json --sensitivity=2"),
             (json!({"do": "export", "to": "a.nk"}), "export in.json -o .new-a.nk"),
         ] {
             assert_eq!(words(&value), expected);

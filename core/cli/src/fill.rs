@@ -4,7 +4,7 @@ use crate::failure::{Failure, line};
 use crate::{arguments, progress, project, render};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
-use rototoon::pipeline;
+use rototoon::pipeline::{self, FillOptions};
 use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::Stage;
@@ -28,6 +28,14 @@ pub fn command() -> Command {
                 .value_parser(render::range),
         )
         .arg(arguments::sensitivity())
+        .arg(
+            Arg::new("least_confidence")
+                .long("confidence")
+                .value_name("NUMBER")
+                .help("Regions whose colour has a lower confidence stay unpainted, from 0 to 1")
+                .default_value("0")
+                .value_parser(arguments::within(0.0, 1.0)),
+        )
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -39,7 +47,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     check_writable(to)?;
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
-    let options = Options { style: Style::Auto, sensitivity };
+    let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);
+    let options = FillOptions { lines: Options { style: Style::Auto, sensitivity }, confidence };
     let (document, report) = progress::run(arguments::threads(given), |bar| {
         let report = pipeline::fill(&mut document, project::folder(from), frames, &options, bar)
             .map_err(|error| Failure::of(error, from))?;

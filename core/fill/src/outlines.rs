@@ -38,6 +38,7 @@ pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
     let painted: Vec<(usize, usize, usize)> =
         (1..=regions.count).filter_map(|region| Some((region, paint.colour(region)?, paint.tracks[region]?))).collect();
     let boxes = boxes(&regions.nearest, regions.count);
+    let size = Point::new(regions.nearest.width() as f64, regions.nearest.height() as f64);
     let mut fills: Vec<(f64, Fill)> = painted
         .into_par_iter()
         .filter_map(|(region, colour, track)| {
@@ -52,7 +53,7 @@ pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
             let corner = Point::new(left as f64, top as f64) - Point::ONE;
             let mut loops: Vec<(f64, Vec<Point>)> = outlines(&field)
                 .into_iter()
-                .map(|own| own.into_iter().map(|p| p + corner).collect::<Vec<Point>>())
+                .map(|own| own.into_iter().map(|p| cornered(p + corner, size)).collect::<Vec<Point>>())
                 .map(|own| (polygon::signed_area(&own), thinned(&own, THIN * regions.unit)))
                 .filter(|own| own.1.len() > 2)
                 .collect();
@@ -77,6 +78,12 @@ fn boxes(labels: &Raster<u32>, count: usize) -> Vec<[usize; 4]> {
         }
     }
     boxes
+}
+
+/// A point of an outline in a picture of a size. Outlines cut corners by half a pixel; those of the picture are put back.
+fn cornered(p: Point, size: Point) -> Point {
+    let corner = Point::select(p.cmplt(0.5 * size), Point::ZERO, size);
+    if (p - corner).abs().max_element() < 0.75 { corner } else { p }
 }
 
 /// The points of a closed outline that keep it within a distance. The walk is from the first point to the one that is
@@ -104,5 +111,52 @@ fn thinned(points: &[Point], within: f64) -> Vec<Point> {
             spans.extend([(from, k), (k, to)]);
         }
     }
-    points.iter().zip(kept).filter(|own| own.1).map(|own| *own.0).collect()
+    let thin: Vec<Point> = points.iter().zip(kept).filter(|own| own.1).map(|own| *own.0).collect();
+    // What is thinner than the tolerance stays as it is.
+    if thin.len() > 2 { thin } else { points.to_vec() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::page::Click;
+    use rototoon_lines::Options;
+    use std::sync::Arc;
+
+    #[test]
+    fn paint_goes_under_the_line_and_meets_what_is_on_the_other_side() {
+        // A ring with a line of 6 px.
+        let middle = Point::new(270.0, 270.0);
+        let away = |x: usize, y: usize| Point::new(x as f64 + 0.5, y as f64 + 0.5).distance(middle);
+        let ink = |x: usize, y: usize| (away(x, y) - 100.0).abs() < 3.0;
+        let picture = Raster::from_fn(540, 540, |x, y| if ink(x, y) { [0.0; 3] } else { [1.0; 3] });
+        let mut page = Page::new(Arc::new(picture), &Options::default());
+        let clicks = [Point::new(3.0, 3.0), middle];
+        let clicks: Vec<Click> = clicks.iter().enumerate().map(|(colour, &at)| Click { at, colour }).collect();
+        let (paint, _) = page.painted(&clicks, 2, &mut 0);
+        let painted = fills(&page, &paint);
+        let [paper, disc] = painted.as_slice() else { panic!("{painted:?}") };
+        assert_eq!((paper.holes.len(), disc.holes.len()), (1, 0));
+        for p in paper.holes[0].iter().chain(&disc.outline) {
+            assert!((p.distance(middle) - 100.0).abs() < 2.0, "near the middle of the line: {}", p.distance(middle));
+        }
+        let areas = [&paper.outline, &paper.holes[0], &disc.outline].map(|own| polygon::signed_area(own).abs());
+        assert!(areas[0] == 540.0 * 540.0 && (areas[1] - areas[2]).abs() < 100.0, "{areas:?}");
+    }
+
+    #[test]
+    fn a_thinned_outline_keeps_its_corners() {
+        let square: Vec<Point> = (0..40)
+            .map(|k| match k / 10 {
+                0 => Point::new(f64::from(k), 0.0),
+                1 => Point::new(10.0, f64::from(k - 10)),
+                2 => Point::new(f64::from(30 - k), 10.0),
+                _ => Point::new(0.0, f64::from(40 - k)),
+            })
+            .collect();
+        assert_eq!(thinned(&square, 0.5).len(), 4);
+        let sliver: Vec<Point> =
+            [(0.0, 0.0), (5.0, -0.2), (9.0, 0.0), (5.0, 0.2)].map(|(x, y)| Point::new(x, y)).to_vec();
+        assert_eq!(thinned(&sliver, 0.5).len(), 4, "a sliver does not vanish");
+    }
 }

@@ -16,6 +16,8 @@ use std::collections::{BinaryHeap, VecDeque};
 
 /// Area of the smallest region in pixels at 540 lines.
 const LEAST: f64 = 6.0;
+/// Most regions of a drawing. Of more, which only grain and photographs have, the largest count.
+const MOST: usize = 1500;
 /// Steps into the ink, at 540 lines, up to which a place still counts as inside of its region.
 const NEAR: f64 = 4.0;
 
@@ -39,7 +41,7 @@ impl Regions {
     pub fn new(ink: &Raster<bool>) -> Self {
         let unit = ink.height().max(1) as f64 / 540.0;
         let (mut inside, mut areas) = components(ink);
-        let least = (LEAST * unit * unit).max(1.0) as usize;
+        let least = ((LEAST * unit * unit).max(1.0) as usize).max(least_of_largest(&areas));
         let mut count = 0;
         let numbers: Vec<u32> = areas
             .drain(..)
@@ -105,6 +107,13 @@ impl Regions {
         }
         (self.nearest, self.steps) = spread(&self.inside);
     }
+}
+
+/// The area from which on at most [`MOST`] areas are left; 0 if there are no more.
+fn least_of_largest(areas: &[usize]) -> usize {
+    let mut sorted = areas.to_vec();
+    sorted.sort_unstable_by_key(|&area| std::cmp::Reverse(area));
+    sorted.get(MOST).map_or(0, |area| area + 1)
 }
 
 /// The pixels beside a pixel.
@@ -227,6 +236,16 @@ mod tests {
         assert_eq!(column(4), [1; 10]);
         assert_eq!(column(9), [2; 10]);
         assert!(column(6).iter().enumerate().all(|(y, &label)| (label == 0) == wall(y)));
+    }
+
+    #[test]
+    fn of_very_many_regions_the_largest_count() {
+        // A net of meshes, of which those in the first column are twice as large.
+        let ink = Raster::from_fn(402, 400, |x, y| y % 4 == 3 || (x > 3 && x % 4 == 3));
+        let regions = Regions::new(&ink);
+        assert!(regions.count < MOST, "{}", regions.count);
+        let few = Regions::new(&Raster::from_fn(42, 40, |x, y| y % 4 == 3 || x % 4 == 3));
+        assert_eq!(few.count, 110, "all of a hundred and ten");
     }
 
     #[test]

@@ -25,6 +25,15 @@ const WHOLE: f64 = 0.5;
 /// Confidence below which a region is in doubt.
 const DOUBT: f64 = 0.5;
 
+/// Options of filling.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FillOptions {
+    /// How ink is found.
+    pub lines: Options,
+    /// Regions whose colour has a lower confidence stay unpainted, 0 to 1.
+    pub confidence: f64,
+}
+
 /// What became of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FilledFrame {
@@ -86,7 +95,7 @@ pub fn fill(
     document: &mut Document,
     folder: &Path,
     range: Option<RangeInclusive<FrameNumber>>,
-    options: &Options,
+    options: &FillOptions,
     progress: &dyn Progress,
 ) -> Result<FillReport, PipelineError> {
     let footage = &document.scene.footage;
@@ -171,7 +180,7 @@ struct Painted {
 /// Painting at work.
 struct Painting<'a> {
     frames: &'a dyn FrameSource,
-    options: &'a Options,
+    options: &'a FillOptions,
     progress: &'a dyn Progress,
     palette: Vec<Colour>,
     /// The next new number of a region.
@@ -264,7 +273,7 @@ impl Painting<'_> {
     fn look(&mut self, frame: FrameNumber) -> Result<(Arc<Raster<Colour>>, Page), PipelineError> {
         self.progress()?;
         let picture = self.frames.picture(frame)?;
-        Ok((picture.clone(), Page::new(picture, self.options)))
+        Ok((picture.clone(), Page::new(picture, &self.options.lines)))
     }
 
     fn progress(&mut self) -> Result<(), PipelineError> {
@@ -291,7 +300,9 @@ impl Painting<'_> {
             track: fill.track,
             confidence: fill.confidence,
         };
-        let regions: Vec<FilledRegion> = fills(&painted.page, &painted.paint).into_iter().map(region).collect();
+        let sure = |fill: &crate::fill::Fill| fill.confidence >= self.options.confidence;
+        let regions: Vec<FilledRegion> =
+            fills(&painted.page, &painted.paint).into_iter().filter(sure).map(region).collect();
         let doubtful = regions.iter().filter(|region| region.confidence < DOUBT).count();
         let frame = painted.frame;
         self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related: true });

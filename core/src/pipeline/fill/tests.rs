@@ -45,7 +45,7 @@ impl Film {
     }
 
     fn fill(&mut self) -> Result<FillReport, PipelineError> {
-        fill(&mut self.document, self.folder.path(), None, &Options::default(), &Silent)
+        fill(&mut self.document, self.folder.path(), None, &FillOptions::default(), &Silent)
     }
 
     /// The painted region at a place.
@@ -165,7 +165,7 @@ fn other_frames_and_the_document_stay() {
     let mut film = Film::new(4, moving).clicked(&[(0, &own_clicks())]);
     film.fill().unwrap();
     let before = film.document.filled().unwrap();
-    fill(&mut film.document, film.folder.path(), Some(2..=2), &Options::default(), &Silent).unwrap();
+    fill(&mut film.document, film.folder.path(), Some(2..=2), &FillOptions::default(), &Silent).unwrap();
     assert_eq!(film.document.filled().unwrap(), before, "frame 2 is painted as before, and the others are kept");
 }
 
@@ -192,6 +192,19 @@ fn errors_name_the_field() {
     let mut outside = film().clicked(&[(0, &[click((5.0, 5.0), PAPER), click((900.0, 5.0), RED)])]);
     let report = outside.fill().unwrap();
     assert_eq!(report.missed, ["fills[0].regions[1].at"]);
-    let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &Options::default(), &Silent);
+    let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &FillOptions::default(), &Silent);
     assert_eq!(range.unwrap_err().to_string(), "frames: found 0 to 7, expected frames of the footage, 0 to 1");
+}
+
+#[test]
+fn regions_that_are_not_sure_enough_stay_unpainted() {
+    // The disc is not clicked, so nothing is known about it.
+    let mut film = Film::new(1, moving).clicked(&[(0, &own_clicks()[..2])]);
+    film.fill().unwrap();
+    let guessed = film.at(1, (66.0, 75.0)).unwrap();
+    assert!(guessed.confidence < 0.5, "{}", guessed.confidence);
+    let options = FillOptions { confidence: 0.5, ..FillOptions::default() };
+    fill(&mut film.document, film.folder.path(), None, &options, &Silent).unwrap();
+    assert_eq!(film.at(1, (66.0, 75.0)), None);
+    assert_eq!(film.at(1, (31.0, 75.0)).unwrap().colour, RED);
 }
