@@ -6,6 +6,7 @@
 //! 1973).
 
 use crate::page::{Page, Paint};
+use crate::regions::Regions;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::Raster;
@@ -38,27 +39,10 @@ pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
     let painted: Vec<(usize, usize, usize)> =
         (1..=regions.count).filter_map(|region| Some((region, paint.colour(region)?, paint.tracks[region]?))).collect();
     let boxes = boxes(&regions.nearest, regions.count);
-    let size = Point::new(regions.nearest.width() as f64, regions.nearest.height() as f64);
     let mut fills: Vec<(f64, Fill)> = painted
         .into_par_iter()
         .filter_map(|(region, colour, track)| {
-            let [left, top, right, bottom] = boxes[region];
-            // A border of one pixel around it, which is outside.
-            let field = Raster::from_fn(right - left + 2, bottom - top + 2, |x, y| {
-                let within = (left + x).checked_sub(1).zip((top + y).checked_sub(1));
-                let within = within.filter(|&(x, y)| x < right && y < bottom && x >= left && y >= top);
-                let own = |(x, y)| regions.nearest.get(x, y) as usize == region && regions.steps.get(x, y) <= under;
-                if within.is_some_and(own) { 1.0 } else { -1.0 }
-            });
-            let corner = Point::new(left as f64, top as f64) - Point::ONE;
-            let mut loops: Vec<(f64, Vec<Point>)> = outlines(&field)
-                .into_iter()
-                .map(|own| own.into_iter().map(|p| cornered(p + corner, size)).collect::<Vec<Point>>())
-                .map(|own| (polygon::signed_area(&own), thinned(&own, THIN * regions.unit)))
-                .filter(|own| own.1.len() > 2)
-                .collect();
-            loops.sort_by(|a, b| b.0.total_cmp(&a.0));
-            let mut loops = loops.into_iter();
+            let mut loops = loops(regions, region, boxes[region], under).into_iter();
             let (area, outline) = loops.next().filter(|own| own.0 > 0.0)?;
             let holes = loops.filter(|own| own.0 < 0.0).map(|own| own.1).collect();
             Some((area, Fill { outline, holes, colour, track, confidence: paint.confidence[region] }))
@@ -66,6 +50,31 @@ pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
         .collect();
     fills.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.track.cmp(&b.1.track)));
     fills.into_iter().map(|own| own.1).collect()
+}
+
+/// The loops around a region that reaches `under` steps into its ink, with their areas: the largest first, holes last.
+fn loops(
+    regions: &Regions,
+    region: usize,
+    [left, top, right, bottom]: [usize; 4],
+    under: u32,
+) -> Vec<(f64, Vec<Point>)> {
+    // A border of one pixel around it, which is outside.
+    let field = Raster::from_fn(right - left + 2, bottom - top + 2, |x, y| {
+        let within = (left + x).checked_sub(1).zip((top + y).checked_sub(1));
+        let within = within.filter(|&(x, y)| x < right && y < bottom && x >= left && y >= top);
+        let own = |(x, y)| regions.nearest.get(x, y) as usize == region && regions.steps.get(x, y) <= under;
+        if within.is_some_and(own) { 1.0 } else { -1.0 }
+    });
+    let corner = Point::new(left as f64, top as f64) - Point::ONE;
+    let size = Point::new(regions.nearest.width() as f64, regions.nearest.height() as f64);
+    let mut loops: Vec<(f64, Vec<Point>)> = outlines(&field)
+        .into_iter()
+        .map(|own| own.into_iter().map(|p| cornered(p + corner, size)).collect::<Vec<Point>>())
+        .map(|own| (polygon::signed_area(&own), thinned(&own, THIN * regions.unit)))
+        .collect();
+    loops.sort_by(|a, b| b.0.total_cmp(&a.0));
+    loops
 }
 
 /// The box of pixels of each region: left, top, right and bottom, the latter two not within it.

@@ -100,19 +100,7 @@ pub fn fill(
 ) -> Result<FillReport, PipelineError> {
     let footage = &document.scene.footage;
     let range = frames_of(footage, range)?;
-    let clicks = document.fills().map_err(|error| field(&error))?;
-    if let Some((k, found)) = clicks.iter().enumerate().find(|(_, c)| c.frame < footage.first || c.frame > footage.last)
-    {
-        let found = found.frame;
-        let (a, b) = (footage.first, footage.last);
-        return Err(field(&format!("fills[{k}].frame: found {found}, expected a frame of the footage, {a} to {b}")));
-    }
-    let clicks: Vec<(usize, FillClicks)> =
-        clicks.into_iter().enumerate().filter(|own| !own.1.clicks.is_empty()).collect();
-    if clicks.is_empty() {
-        let expected = r#"clicks of the paint bucket on a frame: "fills": [{"frame": 0, "regions": [{"at": [x, y], "colour": [r, g, b]}, …]}]"#;
-        return Err(field(&format!("fills: found no click, expected {expected}")));
-    }
+    let clicks = clicks(document)?;
     super::memory::to_fill(footage)?;
     let earlier = document.filled().map_err(|error| field(&error))?;
     let sequence = frames(document, folder)?;
@@ -138,6 +126,25 @@ pub fn fill(
     report.frames.sort_by_key(|frame| frame.frame);
     document.set_filled(&found);
     Ok(report)
+}
+
+/// The frames with clicks, each with its place in the document.
+fn clicks(document: &Document) -> Result<Vec<(usize, FillClicks)>, PipelineError> {
+    let footage = &document.scene.footage;
+    let clicks = document.fills().map_err(|error| field(&error))?;
+    if let Some((k, found)) = clicks.iter().enumerate().find(|(_, c)| c.frame < footage.first || c.frame > footage.last)
+    {
+        let found = found.frame;
+        let (a, b) = (footage.first, footage.last);
+        return Err(field(&format!("fills[{k}].frame: found {found}, expected a frame of the footage, {a} to {b}")));
+    }
+    let clicks: Vec<(usize, FillClicks)> =
+        clicks.into_iter().enumerate().filter(|own| !own.1.clicks.is_empty()).collect();
+    if clicks.is_empty() {
+        let expected = r#"clicks of the paint bucket on a frame: "fills": [{"frame": 0, "regions": [{"at": [x, y], "colour": [r, g, b]}, …]}]"#;
+        return Err(field(&format!("fills: found no click, expected {expected}")));
+    }
+    Ok(clicks)
 }
 
 /// The error of a field.
