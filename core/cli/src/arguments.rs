@@ -92,6 +92,16 @@ pub fn threads(arguments: &ArgMatches) -> usize {
     arguments.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
 }
 
+/// `--frames A-B` of work on drawings.
+pub fn frames() -> Arg {
+    Arg::new("frames")
+        .long("frames")
+        .value_name("A-B")
+        .help("First and last frame, or one frame [default: all frames of the footage]")
+        .allow_hyphen_values(true)
+        .value_parser(crate::render::range)
+}
+
 /// `--sensitivity NUMBER` of what finds ink.
 pub fn sensitivity() -> Arg {
     Arg::new("sensitivity")

@@ -1,7 +1,7 @@
 //! `rototoon fill`: line drawings painted by clicks on one of them.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, project, render};
+use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{self, FillOptions};
@@ -19,14 +19,7 @@ pub fn command() -> Command {
         )
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with painted regions in its field \"filled\""))
-        .arg(
-            Arg::new("frames")
-                .long("frames")
-                .value_name("A-B")
-                .help("First and last frame, or one frame [default: all frames of the footage]")
-                .allow_hyphen_values(true)
-                .value_parser(render::range),
-        )
+        .arg(arguments::frames())
         .arg(arguments::sensitivity())
         .arg(
             Arg::new("least_confidence")

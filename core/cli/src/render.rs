@@ -21,14 +21,7 @@ pub fn command() -> Command {
             "The files to write, such as out.%04d.exr or out.%04d.png; for one frame also a plain name",
         ))
         .args(arguments::of_stage(Stage::Render))
-        .arg(
-            Arg::new("frames")
-                .long("frames")
-                .value_name("A-B")
-                .help("First and last frame, or one frame [default: all frames of the footage]")
-                .allow_hyphen_values(true)
-                .value_parser(range),
-        )
+        .arg(arguments::frames())
         .arg(
             Arg::new("parts")
                 .long("parts")

@@ -1,7 +1,7 @@
 //! `rototoon trace`: line drawings as strokes, the same on every frame.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, project, render};
+use crate::{arguments, progress, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
@@ -25,14 +25,7 @@ pub fn command() -> Command {
         )
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with traced strokes"))
-        .arg(
-            Arg::new("frames")
-                .long("frames")
-                .value_name("A-B")
-                .help("First and last frame, or one frame [default: all frames of the footage]")
-                .allow_hyphen_values(true)
-                .value_parser(render::range),
-        )
+        .arg(arguments::frames())
         .arg(
             Arg::new("line_style")
                 .long("style")

@@ -55,6 +55,15 @@ pub(super) fn number(value: Option<&Value>, place: &str) -> Result<f64, FieldErr
     value.and_then(Value::as_f64).ok_or_else(|| wrong(place, &described(value), "a number"))
 }
 
+/// Reads a number from 0 to 1.
+pub(super) fn share(value: Option<&Value>, place: &str) -> Result<f64, FieldError> {
+    let found = number(value, place)?;
+    match (0.0..=1.0).contains(&found) {
+        true => Ok(found),
+        false => Err(wrong(place, &found.to_string(), "a number from 0 to 1")),
+    }
+}
+
 /// Reads a whole number of at least 0.
 pub(super) fn count<T: TryFrom<u64>>(value: Option<&Value>, place: &str) -> Result<T, FieldError> {
     let number = value.and_then(Value::as_u64).and_then(|n| T::try_from(n).ok());

@@ -13,7 +13,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, count, frame, number, object, point, wrong};
+use super::fields::{FieldError, array, count, frame, given, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -154,7 +154,7 @@ fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
         holes,
         colour: colour(fields.get("colour"), &format!("{place}.colour"))?,
         track: count(fields.get("track"), &format!("{place}.track"))?,
-        confidence: fields.get("confidence").map_or(Ok(1.0), |given| share(given, &format!("{place}.confidence")))?,
+        confidence: given(fields, place, "confidence", share)?.unwrap_or(1.0),
     })
 }
 
@@ -169,17 +169,9 @@ fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
     }
     let mut colour = [0.0; 3];
     for (k, channel) in colour.iter_mut().enumerate() {
-        *channel = share(&list[k], &format!("{place}[{k}]"))? as f32;
+        *channel = share(list.get(k), &format!("{place}[{k}]"))? as f32;
     }
     Ok(colour)
-}
-
-fn share(value: &Value, place: &str) -> Result<f64, FieldError> {
-    let found = number(Some(value), place)?;
-    match (0.0..=1.0).contains(&found) {
-        true => Ok(found),
-        false => Err(wrong(place, &found.to_string(), "a number from 0 to 1")),
-    }
 }
 
 fn written(region: &FilledRegion) -> Value {

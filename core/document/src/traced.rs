@@ -14,7 +14,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, count, flag, frame, given, number, object, point, wrong};
+use super::fields::{FieldError, array, count, flag, frame, given, number, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -139,14 +139,6 @@ fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
         *channel = number(list.get(k), &format!("{place}[{k}]"))? as f32;
     }
     Ok(colour)
-}
-
-fn share(value: Option<&Value>, place: &str) -> Result<f64, FieldError> {
-    let found = number(value, place)?;
-    match (0.0..=1.0).contains(&found) {
-        true => Ok(found),
-        false => Err(wrong(place, &found.to_string(), "a number from 0 to 1")),
-    }
 }
 
 fn written(stroke: &TracedStroke) -> Value {

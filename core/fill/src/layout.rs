@@ -85,6 +85,19 @@ pub fn figures(labels: &Raster<u32>, count: usize) -> Vec<Figure> {
     sums.into_iter().map(figure).collect()
 }
 
+/// The box of each of `count` regions and of 0 in a picture of labels: left, top, right and bottom, the latter two not
+/// within it.
+pub fn boxes(labels: &Raster<u32>, count: usize) -> Vec<[usize; 4]> {
+    let mut boxes = vec![[usize::MAX, usize::MAX, 0, 0]; count + 1];
+    for y in 0..labels.height() {
+        for (x, &label) in labels.row(y).iter().enumerate() {
+            let own = &mut boxes[label as usize];
+            *own = [own[0].min(x), own[1].min(y), own[2].max(x + 1), own[3].max(y + 1)];
+        }
+    }
+    boxes
+}
+
 fn borders(labels: &Raster<u32>, count: usize) -> Vec<Vec<(usize, f32)>> {
     let (width, height) = (labels.width(), labels.height());
     let mut shared: Vec<BTreeMap<usize, usize>> = vec![BTreeMap::new(); count + 1];

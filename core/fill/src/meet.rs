@@ -12,7 +12,7 @@
 //!   plus half the root of the area, and the areas are within a factor of 3.
 //! - The other terms let what was carried far off be found by its [neighbours](crate::relax).
 
-use crate::layout::{Layout, figures};
+use crate::layout::{Layout, boxes, figures};
 use crate::shifts::Shifts;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
@@ -104,7 +104,7 @@ fn moved(there: &Layout, here: &Layout, shifts: &Shifts) -> Vec<(usize, usize, f
     let (width, height) = (here.nearest.width(), here.nearest.height());
     let seen = Raster::from_fn(width, height, |x, y| there.nearest_at(shifts.carry(here.place(x, y))));
     let shapes = figures(&seen, there.figures.len() - 1);
-    let boxes = boxes(&here.nearest, here.figures.len());
+    let boxes = boxes(&here.nearest, here.figures.len() - 1);
     (1..here.figures.len())
         .into_par_iter()
         .flat_map_iter(|j| {
@@ -128,18 +128,6 @@ fn moved(there: &Layout, here: &Layout, shifts: &Shifts) -> Vec<(usize, usize, f
             (1..shapes.len()).filter(near).map(|i| (j, i, overlap(i))).collect::<Vec<_>>()
         })
         .collect()
-}
-
-/// The box of cells of each region: left, top, right and bottom, the latter two not within it.
-fn boxes(labels: &Raster<u32>, count: usize) -> Vec<[usize; 4]> {
-    let mut boxes = vec![[usize::MAX, usize::MAX, 0, 0]; count];
-    for y in 0..labels.height() {
-        for (x, &label) in labels.row(y).iter().enumerate() {
-            let own = &mut boxes[label as usize];
-            *own = [own[0].min(x), own[1].min(y), own[2].max(x + 1), own[3].max(y + 1)];
-        }
-    }
-    boxes
 }
 
 /// The number of cells of region `own` in a box that are cells of `other` after a shift.

@@ -5,6 +5,7 @@
 //! pixels, and is then thinned to the points that keep it within half a pixel of 540 lines (Ramer 1972; Douglas & Peucker
 //! 1973).
 
+use crate::layout::boxes;
 use crate::page::{Page, Paint};
 use crate::regions::Regions;
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
@@ -75,18 +76,6 @@ fn loops(
         .collect();
     loops.sort_by(|a, b| b.0.total_cmp(&a.0));
     loops
-}
-
-/// The box of pixels of each region: left, top, right and bottom, the latter two not within it.
-fn boxes(labels: &Raster<u32>, count: usize) -> Vec<[usize; 4]> {
-    let mut boxes = vec![[usize::MAX, usize::MAX, 0, 0]; count + 1];
-    for y in 0..labels.height() {
-        for (x, &label) in labels.row(y).iter().enumerate() {
-            let own = &mut boxes[label as usize];
-            *own = [own[0].min(x), own[1].min(y), own[2].max(x + 1), own[3].max(y + 1)];
-        }
-    }
-    boxes
 }
 
 /// A point of an outline in a picture of a size. Outlines cut corners by half a pixel; those of the picture are put back.
