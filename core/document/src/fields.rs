@@ -2,7 +2,7 @@
 
 use super::schema::{MAX_COORDINATE, MAX_FRAME_NUMBER};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::FrameNumber;
+use rototoon_base::scene::{Colour, FrameNumber};
 use serde_json::{Map, Value};
 
 /// An invalid field.
@@ -53,6 +53,23 @@ pub(super) fn flag(value: Option<&Value>, place: &str) -> Result<bool, FieldErro
 /// Reads a number.
 pub(super) fn number(value: Option<&Value>, place: &str) -> Result<f64, FieldError> {
     value.and_then(Value::as_f64).ok_or_else(|| wrong(place, &described(value), "a number"))
+}
+
+/// Reads a colour: a list of three channels, each read by `channel`.
+pub(super) fn colour(
+    value: Option<&Value>,
+    place: &str,
+    channel: impl Fn(Option<&Value>, &str) -> Result<f64, FieldError>,
+) -> Result<Colour, FieldError> {
+    let list = array(value, place)?;
+    if list.len() != 3 {
+        return Err(wrong(place, &format!("a list of {}", list.len()), "a list of 3"));
+    }
+    let mut colour = [0.0; 3];
+    for (k, value) in colour.iter_mut().enumerate() {
+        *value = channel(list.get(k), &format!("{place}[{k}]"))? as f32;
+    }
+    Ok(colour)
 }
 
 /// Reads a number from 0 to 1.

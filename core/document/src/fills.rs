@@ -13,7 +13,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, count, frame, given, object, point, share, wrong};
+use super::fields::{FieldError, array, colour, count, frame, given, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -134,7 +134,7 @@ fn by_frame<T>(
 fn click(value: &Value, place: &str) -> Result<FillClick, FieldError> {
     let fields = object(value, place)?;
     let at = point(fields.get("at"), &format!("{place}.at"))?;
-    Ok(FillClick { at, colour: colour(fields.get("colour"), &format!("{place}.colour"))? })
+    Ok(FillClick { at, colour: colour(fields.get("colour"), &format!("{place}.colour"), share)? })
 }
 
 fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
@@ -152,7 +152,7 @@ fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
     Ok(FilledRegion {
         outline: outline(fields.get("outline"), &format!("{place}.outline"))?,
         holes,
-        colour: colour(fields.get("colour"), &format!("{place}.colour"))?,
+        colour: colour(fields.get("colour"), &format!("{place}.colour"), share)?,
         track: count(fields.get("track"), &format!("{place}.track"))?,
         confidence: given(fields, place, "confidence", share)?.unwrap_or(1.0),
     })
@@ -160,18 +160,6 @@ fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
 
 fn outline(value: Option<&Value>, place: &str) -> Result<Vec<Point>, FieldError> {
     array(value, place)?.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}[{i}]"))).collect()
-}
-
-fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
-    let list = array(value, place)?;
-    if list.len() != 3 {
-        return Err(wrong(place, &format!("a list of {}", list.len()), "a list of 3"));
-    }
-    let mut colour = [0.0; 3];
-    for (k, channel) in colour.iter_mut().enumerate() {
-        *channel = share(list.get(k), &format!("{place}[{k}]"))? as f32;
-    }
-    Ok(colour)
 }
 
 fn written(region: &FilledRegion) -> Value {

@@ -14,7 +14,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, count, flag, frame, given, number, object, point, share, wrong};
+use super::fields::{FieldError, array, colour, count, flag, frame, given, number, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -124,21 +124,9 @@ fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
         closed,
         fill,
         widths,
-        colour: given(fields, place, "colour", colour)?,
+        colour: given(fields, place, "colour", |value, place| colour(value, place, number))?,
         confidence: given(fields, place, "confidence", share)?,
     })
-}
-
-fn colour(value: Option<&Value>, place: &str) -> Result<Colour, FieldError> {
-    let list = array(value, place)?;
-    if list.len() != 3 {
-        return Err(wrong(place, &format!("a list of {}", list.len()), "a list of 3"));
-    }
-    let mut colour = [0.0; 3];
-    for (k, channel) in colour.iter_mut().enumerate() {
-        *channel = number(list.get(k), &format!("{place}[{k}]"))? as f32;
-    }
-    Ok(colour)
 }
 
 fn written(stroke: &TracedStroke) -> Value {

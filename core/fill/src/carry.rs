@@ -68,7 +68,7 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
     }
     for j in 1..=page.regions.count {
         let sum = |c: usize| known.iter().map(|said| said.colours[j][c]).sum::<f32>();
-        // The largest first, so that the squares of large values stay finite.
+        // Divided by the largest, so that their squares stay finite.
         let sums: Vec<f32> = (0..palette).map(sum).collect();
         let most = sums.iter().copied().fold(0.0, f32::max);
         if most <= 0.0 {

@@ -120,12 +120,33 @@ pub fn fill(
     painting.run(&clicks, &range)?;
     let Painting { mut found, mut report, .. } = painting;
     found.retain(|drawing| range.contains(&drawing.frame));
-    found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
+    let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
+    keep_apart(&mut found, &kept);
+    found.extend(kept);
     found.sort_by_key(|drawing| drawing.frame);
     report.frames.retain(|frame| range.contains(&frame.frame));
     report.frames.sort_by_key(|frame| frame.frame);
     document.set_filled(&found);
     Ok(report)
+}
+
+/// Gives new numbers to regions whose number has another colour on frames that were kept from an earlier run.
+fn keep_apart(found: &mut [FilledDrawing], kept: &[FilledDrawing]) {
+    let regions = |drawings: &[FilledDrawing]| -> Vec<(usize, Colour)> {
+        drawings.iter().flat_map(|drawing| &drawing.regions).map(|region| (region.track, region.colour)).collect()
+    };
+    let (new, old) = (regions(found), regions(kept));
+    let colours: BTreeMap<usize, Colour> = old.iter().copied().collect();
+    let mut next = new.iter().chain(&old).map(|own| own.0 + 1).max().unwrap_or(0);
+    let mut renamed: BTreeMap<usize, usize> = BTreeMap::new();
+    for region in found.iter_mut().flat_map(|drawing| &mut drawing.regions) {
+        if colours.get(&region.track).is_some_and(|colour| *colour != region.colour) {
+            region.track = *renamed.entry(region.track).or_insert_with(|| {
+                next += 1;
+                next - 1
+            });
+        }
+    }
 }
 
 /// The frames with clicks, each with its place in the document.

@@ -170,6 +170,20 @@ fn other_frames_and_the_document_stay() {
 }
 
 #[test]
+fn a_number_has_one_colour_on_kept_frames_too() {
+    let clicks = |disc: Colour| [own_clicks()[0], own_clicks()[1], click((60.0, 75.0), disc)];
+    let mut film = Film::new(3, moving).clicked(&[(0, &clicks(BLUE))]);
+    film.fill().unwrap();
+    // Another colour on the first frame, but only the last one is painted again.
+    let mut film = film.clicked(&[(0, &clicks(RED))]);
+    fill(&mut film.document, film.folder.path(), Some(3..=3), &FillOptions::default(), &Silent).unwrap();
+    let (kept, new) = (film.at(2, (72.0, 75.0)).unwrap(), film.at(3, (78.0, 75.0)).unwrap());
+    assert_eq!((kept.colour, new.colour), (BLUE, RED));
+    assert_ne!(kept.track, new.track);
+    assert_eq!(film.at(2, (5.0, 5.0)).unwrap().track, film.at(3, (5.0, 5.0)).unwrap().track, "the paper is the same");
+}
+
+#[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let painted = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
