@@ -19,8 +19,9 @@ Errors are `RototoonError`. The message names the part, the frame or the field. 
 nothing has changed then.
 
 ====================  ==============================================================================
-`session`             `Session`: track, snap, trace, correct and save a project document
+`session`             `Session`: track, snap, trace, fill, correct and save a project document
 `lines`               traced strokes that `Session` returns
+`fills`               clicks of a painter, and painted regions that `Session` returns
 `results`             results that `Session` returns
 `outcomes`            which tracked contours are sure, doubtful and lost
 `strokes`             matching, fitting and hidden lines of strokes, without a session
@@ -34,7 +35,7 @@ nothing has changed then.
 May import: no other package, and nothing beside Python's standard library.
 """
 
-from . import lines, style, tween
+from . import fills, lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .outcomes import outcomes
@@ -57,6 +58,7 @@ __all__ = [
     "Summary",
     "Track",
     "WeakestFrame",
+    "fills",
     "fit_strokes",
     "hidden_lines",
     "library_path",

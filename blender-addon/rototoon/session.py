@@ -10,12 +10,13 @@ import array
 import ctypes
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from .fills import Click, Filled, flat
 from .lines import Traced
 from .native import handles
-from .native.arrays import as_json, text
+from .native.arrays import as_json, buffer, text
 from .native.errors import RototoonError
 from .results import End, Job, Summary, Track, WeakestFrame
 from .types import Document, Points, Progress
@@ -124,6 +125,17 @@ class Session:
         """Marks the part as there again from frame `first` to `last`. Does nothing where it is there already."""
         self._handle.call("rototoon_session_set_absent", *text(part), first, first if last is None else last, 0)
 
+    def fills(self) -> list[Click]:
+        """The clicks of the painter, by frame."""
+        fills = json.loads(self._handle.give(handles.Text, "rototoon_session_fills"))
+        return [Click(own["frame"], (*each["at"],), (*each["colour"],)) for own in fills for each in own["regions"]]
+
+    def set_fills(self, clicks: Iterable[Click]) -> None:
+        """Replaces the clicks of the painter. Those of a frame keep their order. Painted regions stay until the next `fill`."""
+        frames, places, colours = flat(clicks)
+        arrays = buffer(frames, "i")[0], buffer(places, "d")[0], buffer(colours, "d")[0]
+        self._handle.call("rototoon_session_set_fills", *arrays, len(frames))
+
     # -- work ----------------------------------------------------------------------------------------------------
 
     def track(self, preset: str = "rototoon", progress: Progress | None = None, *, threads: int = 0) -> Summary:
@@ -173,6 +185,44 @@ class Session:
             arguments = (*as_json(options), callback, None)
             return Traced(*self._handle.give(handles.TracedArrays, "rototoon_session_trace", *arguments))
 
+    def fill(
+        self,
+        clicks: Iterable[Click] | None = None,
+        sensitivity: float = 1.0,
+        frames: tuple[int, int] | None = None,
+        progress: Progress | None = None,
+        *,
+        confidence: float = 0.0,
+        threads: int = 0,
+    ) -> Filled:
+        """Paints the regions of line drawings by the clicks of a painter, and stores ``fills`` and ``filled`` in the document.
+
+        `clicks` are (frame, (x, y), (r, g, b)), in pixels and sRGB from 0 to 1; `None` takes those of the document. Work begins on the first
+        frame with clicks, and colours are carried from there to the other frames. Clicks on later frames overrule what was carried there.
+
+        With `sensitivity` 2, ink may be half as dark as usual. `frames` are the first and the last frame, by default those of the
+        footage; regions of other frames stay. Regions whose colour has less than `confidence` stay unpainted. Returns the regions of
+        all frames. Raises `Cancelled`; the document is unchanged then.
+        """
+        options: dict[str, Any] = {"sensitivity": sensitivity, "confidence": confidence, "threads": threads}
+        if frames is not None:
+            options["frames"] = [int(frame) for frame in frames]
+        before = None if clicks is None else self.fills()
+        if clicks is not None:
+            self.set_fills(clicks)
+        try:
+            with handles.progress_callback(progress) as callback:
+                kinds = handles.FilledArrays, handles.Text
+                regions, told = self._handle.give_both(*kinds, "rototoon_session_fill", *as_json(options), callback, None)
+        except BaseException:
+            # A session that was closed meanwhile has no document to mend.
+            if before is not None and not self.closed:
+                self.set_fills(before)
+            raise
+        report = json.loads(told)
+        missed = [(own["frame"], own["click"]) for own in report["missed"]]
+        return Filled(*regions, missed, [own["frame"] for own in report["frames"] if not own["related"]])
+
     # -- results -------------------------------------------------------------------------------------------------
 
     def tracks(self, part: str) -> Track:
@@ -196,6 +246,10 @@ class Session:
     def traced(self) -> Traced:
         """The strokes that `trace` has found on all frames. There are none if nothing was traced."""
         return Traced(*self._handle.give(handles.TracedArrays, "rototoon_session_traced"))
+
+    def filled(self) -> Filled:
+        """The regions that `fill` has painted on all frames. There are none if nothing was painted."""
+        return Filled(*self._handle.give(handles.FilledArrays, "rototoon_session_filled"))
 
     def weakest_frame(self) -> WeakestFrame | None:
         """The frame where the next key helps most. It is no key of any part and not beside one. `None` if there is no such

@@ -23,7 +23,7 @@ pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
-pub use fill::{FillOptions, FillReport, FilledFrame, fill};
+pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xf4a4342e16a27d48
+HEADER_HASH = 0xcd276f096648dcb6
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -26,6 +26,12 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
         (1, "stroke_count", ctypes.c_size_t),
         (5, "drawing_count", ctypes.c_size_t),
         (8, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_fills": (
+        (4, "click_count", ctypes.c_size_t),
+    ),
+    "rototoon_session_fill": (
+        (2, "options_length", ctypes.c_size_t),
     ),
     "rototoon_match_contours": (
         (1, "request_length", ctypes.c_size_t),
@@ -172,6 +178,57 @@ def declare(library: ctypes.CDLL) -> None:
         RototoonProgress,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_fills.restype = ctypes.c_int32
+    library.rototoon_session_set_fills.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_fills.restype = ctypes.c_int32
+    library.rototoon_session_fills.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_fill.restype = ctypes.c_int32
+    library.rototoon_session_fill.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_filled.restype = ctypes.c_int32
+    library.rototoon_session_filled.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_filled_read.restype = ctypes.c_int32
+    library.rototoon_filled_read.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_filled_free.restype = None
+    library.rototoon_filled_free.argtypes = [
         ctypes.c_void_p,
     ]
     library.rototoon_abi_version.restype = ctypes.c_uint32

@@ -245,6 +245,34 @@ class TracedArrays(Handle):
         )
 
 
+class FilledArrays(Handle):
+    """Painted regions."""
+
+    _free = "rototoon_filled_free"
+
+    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
+        """The arrays of `fills.Filled` in their order, as copies."""
+        count = ctypes.c_size_t()
+        out = [ctypes.c_void_p() for _ in range(9)]
+        call("rototoon_filled_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
+        frames, region_offsets, tracks, colours, confidence, doubtful, outline_offsets, point_offsets, points = out
+        bounds = view(region_offsets, "i", count.value + 1)
+        regions = bounds[count.value]
+        outlines = view(outline_offsets, "i", regions + 1)
+        ends = view(point_offsets, "i", outlines[regions] + 1)
+        return (
+            view(frames, "i", count.value),
+            bounds,
+            view(tracks, "i", regions),
+            view(colours, "d", regions, 3),
+            view(confidence, "d", regions),
+            view(doubtful, "i", regions),
+            outlines,
+            ends,
+            view(points, "d", ends[outlines[regions]], 2),
+        )
+
+
 class Session(Handle):
     """A session of the library. It refuses a call during another call, so nothing is freed while in use."""
 
@@ -282,6 +310,11 @@ class Session(Handle):
         """Calls a function of the session that returns a handle, and returns the content of the handle."""
         with self._alone() as pointer:
             return take(kind, name, pointer, *arguments)
+
+    def give_both(self, first: type[Handle], second: type[Handle], name: str, *arguments: Any) -> tuple[Any, Any]:
+        """The same for a function that returns two handles."""
+        with self._alone() as pointer:
+            return take_both(first, second, name, pointer, *arguments)
 
     def close(self) -> None:
         """Frees the session now, or at the end of the call that is running. No new call can begin."""

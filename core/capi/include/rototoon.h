@@ -79,6 +79,9 @@ typedef int32_t RototoonStatus;
 // The snapped paths of a part on one frame.
 typedef struct RototoonCurves RototoonCurves;
 
+// The painted regions of a document, frame by frame.
+typedef struct RototoonFilled RototoonFilled;
+
 // The guiding points of fitted strokes.
 typedef struct RototoonGuides RototoonGuides;
 
@@ -141,6 +144,82 @@ RototoonStatus rototoon_suggest_breakdown(const int32_t *offsets,
                                           void *user,
                                           struct RototoonText **suggestion,
                                           struct RototoonText **error);
+
+// Replaces the clicks of the painter, `fills` in the document. `frames` has `click_count` frame numbers, in any order.
+// `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1; paper is a colour too.
+// On a frame, clicks keep their order. The painted regions stay until `rototoon_session_fill` runs. Without clicks the
+// field is removed.
+RototoonStatus rototoon_session_set_fills(const struct RototoonSession *session,
+                                          const int32_t *frames,
+                                          const double *places,
+                                          const double *colours,
+                                          size_t click_count,
+                                          struct RototoonText **error);
+
+// Returns the clicks of the painter as JSON, in the form of the document's `fills`: `[{"frame", "regions": [{"at":
+// [x, y], "colour": [r, g, b]}]}]`.
+RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
+                                      struct RototoonText **fills,
+                                      struct RototoonText **error);
+
+// Paints the regions of the footage's line drawings by the clicks in the document's `fills`, and stores `filled` in the
+// document. Work begins on the first frame with clicks; from there colours are carried to the other frames. Clicks on
+// later frames overrule what was carried there.
+//
+// `options` is a JSON object, in which all fields may be left out: `sensitivity` to faint ink, 0.1 to 10; `confidence`,
+// 0 to 1, below which a region stays unpainted; `frames`, a list of the first and the last frame; `threads`, 0 for one
+// per core. Regions of frames outside of `frames` stay in the document. It is an error if there is no click.
+//
+// `filled` has the regions of all frames, as `rototoon_session_filled` gives them. `report` is JSON: `{"frames":
+// [{"frame", "regions", "doubtful", "related"}], "missed": [{"frame", "click"}]}`.
+//
+// - `frames` are the frames that were looked at. `doubtful` is the number of regions whose colour is probably wrong.
+//   `related` is false if no painted drawing shows the same; such a frame stays unpainted.
+// - `missed` are the clicks that lie on a line or outside of the picture, and so paint nothing. `click` is the index
+//   among the clicks of its frame.
+RototoonStatus rototoon_session_fill(const struct RototoonSession *session,
+                                     const uint8_t *options,
+                                     size_t options_length,
+                                     RototoonProgress progress,
+                                     void *user,
+                                     struct RototoonFilled **filled,
+                                     struct RototoonText **report,
+                                     struct RototoonText **error);
+
+// Returns the painted regions of the document. There are none if it was not painted.
+RototoonStatus rototoon_session_filled(const struct RototoonSession *session,
+                                       struct RototoonFilled **filled,
+                                       struct RototoonText **error);
+
+// Reads the arrays of painted regions. They live as long as the handle.
+//
+// - `frames`: `frame_count` frame numbers in rising order.
+// - `region_offsets`: `frame_count` + 1 numbers. Frame `f` has the regions `region_offsets[f]` to
+//   `region_offsets[f + 1]` (excluded). Later ones lie over earlier ones.
+// - `tracks`: the number of each region. It is the same on all frames, and occurs once on a frame.
+// - `colours`: three numbers for each region, sRGB from 0 to 1.
+// - `confidence`: for each region the probability, 0 to 1, that its colour is right. It is 1 where a painter clicked.
+// - `doubtful`: for each region 1 if its colour is probably wrong, otherwise 0.
+// - `outline_offsets`: one more than there are regions. Region `i` has the outlines `outline_offsets[i]` to
+//   `outline_offsets[i + 1]` (excluded). The first is its own; the others are those of its holes.
+// - `point_offsets`: one more than there are outlines. Outline `k` has the points `point_offsets[k]` to
+//   `point_offsets[k + 1]` (excluded). The last one joins the first.
+// - `points`: two coordinates for each point, x and y in pixels.
+RototoonStatus rototoon_filled_read(const struct RototoonFilled *filled,
+                                    size_t *frame_count,
+                                    const int32_t **frames,
+                                    const int32_t **region_offsets,
+                                    const int32_t **tracks,
+                                    const double **colours,
+                                    const double **confidence,
+                                    const int32_t **doubtful,
+                                    const int32_t **outline_offsets,
+                                    const int32_t **point_offsets,
+                                    const double **points,
+                                    struct RototoonText **error);
+
+// Frees painted regions. Null is allowed.
+void rototoon_filled_free(struct RototoonFilled *filled);
 
 // The `ROTOTOON_ABI_VERSION` that the library was built with. Compare it with the header's before any other call.
 uint32_t rototoon_abi_version(void);

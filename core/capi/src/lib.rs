@@ -4,9 +4,9 @@
 //! header.
 //!
 //! The crate has two layers. The outer one is the exported functions: [`session_abi`],
-//! [`session_edit_abi`], [`session_track_abi`], [`traced_abi`], [`strokes_abi`], [`tween_abi`], [`breakdown_abi`],
-//! [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
-//! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`edit`], [`options`], [`matching`], [`strokes`],
+//! [`session_edit_abi`], [`session_track_abi`], [`traced_abi`], [`filled_abi`], [`strokes_abi`], [`tween_abi`],
+//! [`breakdown_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
+//! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`filled`], [`edit`], [`options`], [`matching`], [`strokes`],
 //! [`sheet`], [`style`], [`work`].
 //!
 //! # Contract
@@ -46,6 +46,8 @@ pub mod breakdown_abi;
 pub mod callback;
 pub mod edit;
 pub mod entry;
+pub mod filled;
+pub mod filled_abi;
 pub mod functions;
 pub mod handles;
 pub mod matching;

@@ -1,5 +1,6 @@
 //! The session behind a session handle: a document, its pictures, and the results that tracking keeps for reuse.
 
+use crate::filled::{self, RototoonFilled};
 use crate::options::Options;
 use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
@@ -7,6 +8,7 @@ use crate::work::{self, GoOn};
 use rototoon::image::sequence::Sequence;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::Document;
+use rototoon::project::fills::FillClicks;
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
 use rototoon::snap::{CorridorWidth, Follow, SnapError, SnapOptions, snap_scene};
@@ -228,6 +230,39 @@ impl Session {
     /// The traced strokes of the document.
     pub fn traced(&self) -> Result<RototoonTraced, Failure> {
         RototoonTraced::of(&self.document.traced().map_err(Failure::error)?)
+    }
+
+    /// The clicks of the painter as JSON, in the form of the document's `fills`.
+    pub fn fills(&self) -> Result<String, Failure> {
+        let fills = self.document.fills().map_err(Failure::error)?;
+        Ok(filled::fills_to_json(&fills))
+    }
+
+    /// Replaces the clicks of the painter.
+    pub fn set_fills(&mut self, fills: &[FillClicks]) {
+        self.document.set_fills(fills);
+    }
+
+    /// Paints the regions of the footage, and stores them in the document. Returns those of all frames, and a report as JSON.
+    pub fn fill(&mut self, options: &str, go_on: GoOn<'_>) -> Result<(RototoonFilled, String), Failure> {
+        let asked = filled::Asked::parse(options)?;
+        let mut document = self.document.clone();
+        let found = work::run(asked.threads, go_on, |progress: &dyn Progress| {
+            let report = pipeline::fill(&mut document, &self.folder, asked.frames(), &asked.options(), progress)
+                .map_err(|error| match error {
+                    PipelineError::Cancelled(cancelled) => cancelled.into(),
+                    other => Failure::error(other),
+                })?;
+            let filled = RototoonFilled::of(&document.filled().map_err(Failure::error)?)?;
+            Ok((filled, filled::report_to_json(&report)))
+        })?;
+        self.document = document;
+        Ok(found)
+    }
+
+    /// The painted regions of the document.
+    pub fn filled(&self) -> Result<RototoonFilled, Failure> {
+        RototoonFilled::of(&self.document.filled().map_err(Failure::error)?)
     }
 
     /// Drops pictures and solved spans. After a panic they may be half-written.

@@ -1,5 +1,7 @@
 //! Tests of the ABI from the side of a foreign caller: pointers, statuses, texts.
 
+mod fills;
+
 use crate::callback::RototoonProgress;
 use crate::edit;
 use crate::entry::{MAX_BYTES, entry};

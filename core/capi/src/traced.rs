@@ -8,7 +8,7 @@ use serde::Deserialize;
 use std::ops::RangeInclusive;
 
 /// Least and greatest sensitivity to faint ink.
-const SENSITIVITY: RangeInclusive<f64> = 0.1..=10.0;
+pub(crate) const SENSITIVITY: RangeInclusive<f64> = 0.1..=10.0;
 
 /// The traced strokes of a document, frame by frame.
 pub struct RototoonTraced {
@@ -84,6 +84,15 @@ impl RototoonTraced {
     }
 }
 
+/// Refuses an option that is outside of its range, or no number.
+pub(crate) fn within(name: &str, found: f64, range: RangeInclusive<f64>) -> Result<(), Failure> {
+    if range.contains(&found) {
+        return Ok(());
+    }
+    let (least, most) = (range.start(), range.end());
+    Err(Failure::Error(format!("options: {name}: found {found}, expected a number from {least} to {most}")))
+}
+
 /// The JSON options of tracing.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -116,13 +125,7 @@ impl Asked {
             "" => Self::default(),
             _ => serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}")))?,
         };
-        if !SENSITIVITY.contains(&asked.sensitivity) {
-            let (least, most) = (SENSITIVITY.start(), SENSITIVITY.end());
-            let found = asked.sensitivity;
-            return Err(Failure::Error(format!(
-                "options: sensitivity: found {found}, expected a number from {least} to {most}"
-            )));
-        }
+        within("sensitivity", asked.sensitivity, SENSITIVITY)?;
         Ok(asked)
     }
 

@@ -38,6 +38,17 @@ pub struct FillClicks {
     pub clicks: Vec<FillClick>,
 }
 
+impl FillClicks {
+    /// The entry of the document's field.
+    pub fn to_json(&self) -> Value {
+        let click = |click: &FillClick| {
+            let at = click.at.to_array().map(|value| rounded(value, DECIMALS));
+            json!({"at": at, "colour": written_colour(click.colour)})
+        };
+        json!({"frame": self.frame, "regions": self.clicks.iter().map(click).collect::<Vec<_>>()})
+    }
+}
+
 /// A painted region on one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilledRegion {
@@ -74,6 +85,16 @@ impl Document {
             Ok(FillClicks { frame: on, clicks: list.iter().enumerate().map(click).collect::<Result<_, _>>()? })
         };
         by_frame(&self.other_list("fills")?, "fills", read)
+    }
+
+    /// Puts clicks into the document, in place of earlier ones. Without any, the field is removed.
+    pub fn set_fills(&mut self, fills: &[FillClicks]) {
+        if fills.is_empty() {
+            self.remove_other_field("fills");
+            return;
+        }
+        let written = fills.iter().map(FillClicks::to_json);
+        self.set_other_field("fills", lines(written));
     }
 
     /// The painted regions of all frames; empty if there are none.
@@ -163,18 +184,27 @@ fn outline(value: Option<&Value>, place: &str) -> Result<Vec<Point>, FieldError>
 }
 
 fn written(region: &FilledRegion) -> Value {
-    let rounded = |value: f64| (value * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
-    let line = |points: &[Point]| -> Vec<[f64; 2]> { points.iter().map(|p| [rounded(p.x), rounded(p.y)]).collect() };
+    let line = |points: &[Point]| -> Vec<[f64; 2]> {
+        points.iter().map(|p| p.to_array().map(|value| rounded(value, DECIMALS))).collect()
+    };
     let mut out = Map::new();
     out.insert("outline".into(), json!(line(&region.outline)));
     if !region.holes.is_empty() {
         out.insert("holes".into(), json!(region.holes.iter().map(|hole| line(hole)).collect::<Vec<_>>()));
     }
-    // Colours are told as they were given: 0.1 and not 0.10000000149.
-    out.insert("colour".into(), json!(region.colour.map(|c| (f64::from(c) * 1e6).round() / 1e6)));
+    out.insert("colour".into(), json!(written_colour(region.colour)));
     out.insert("track".into(), json!(region.track));
-    out.insert("confidence".into(), json!((region.confidence * 1e3).round() / 1e3));
+    out.insert("confidence".into(), json!(rounded(region.confidence, 3)));
     Value::Object(out)
+}
+
+/// Colours are told as they were given: 0.1 and not 0.10000000149.
+fn written_colour(colour: Colour) -> [f64; 3] {
+    colour.map(|channel| rounded(f64::from(channel), 6))
+}
+
+fn rounded(value: f64, decimals: i32) -> f64 {
+    (value * 10f64.powi(decimals)).round() / 10f64.powi(decimals)
 }
 
 #[cfg(test)]
@@ -196,6 +226,19 @@ mod tests {
         let click = FillClick { at: Point::new(3.0, 4.5), colour: [1.0, 0.5, 0.0] };
         assert_eq!(doc.fills().unwrap(), [FillClicks { frame: 2, clicks: vec![click] }]);
         assert!(document(r#""author": 1"#).fills().unwrap().is_empty());
+    }
+
+    #[test]
+    fn clicks_are_written_and_removed() {
+        let mut doc = document(r#""author": "a""#);
+        let click = FillClick { at: Point::new(3.0, 4.5), colour: [0.1, 0.5, 0.0] };
+        let fills = [FillClicks { frame: -1, clicks: vec![click; 2] }, FillClicks { frame: 2, clicks: vec![click] }];
+        doc.set_fills(&fills);
+        let again = Document::parse(&doc.to_json(), "a.json").unwrap();
+        assert_eq!(again.fills().unwrap(), fills);
+        doc.set_fills(&[]);
+        let text = doc.to_json();
+        assert!(!text.contains("fills") && text.contains("author"), "{text}");
     }
 
     #[test]

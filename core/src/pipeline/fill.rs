@@ -16,14 +16,15 @@ use crate::project::Document;
 use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
 use crate::scene::{Colour, FrameNumber, FrameSource, Progress, Raster};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
 /// Share of a frame's regions that must be clicked so that it counts for frames before it.
 const WHOLE: f64 = 0.5;
-/// Confidence below which a region is in doubt.
-const DOUBT: f64 = 0.5;
+/// Confidence below which a region is in doubt: its colour is probably wrong.
+pub const DOUBT: f64 = 0.5;
 
 /// Options of filling.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -47,13 +48,31 @@ pub struct FilledFrame {
     pub related: bool,
 }
 
+/// A click that paints nothing: it lies on a line or outside of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MissedClick {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Index of the frame's entry in the document's field `fills`.
+    pub entry: usize,
+    /// Index of the click among those of the frame.
+    pub click: usize,
+}
+
+/// Its place in the document.
+impl fmt::Display for MissedClick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "fills[{}].regions[{}].at", self.entry, self.click)
+    }
+}
+
 /// What became of all frames.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FillReport {
     /// The frames, in order.
     pub frames: Vec<FilledFrame>,
-    /// Clicks that paint nothing: their places in the document.
-    pub missed: Vec<String>,
+    /// Clicks that paint nothing.
+    pub missed: Vec<MissedClick>,
 }
 
 impl FillReport {
@@ -246,7 +265,7 @@ impl Painting<'_> {
         let (picture, mut page) = self.look(clicks.1.frame)?;
         let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
         if self.found.is_empty() {
-            self.miss(clicks.0, &missed);
+            self.miss(clicks, &missed);
         }
         Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
     }
@@ -266,7 +285,7 @@ impl Painting<'_> {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
-        self.miss(clicks.0, &missed);
+        self.miss(clicks, &missed);
         Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
     }
 
@@ -315,8 +334,9 @@ impl Painting<'_> {
         clicks.clicks.iter().map(|click| Click { at: click.at, colour: number(&click.colour) }).collect()
     }
 
-    fn miss(&mut self, entry: usize, missed: &[usize]) {
-        self.report.missed.extend(missed.iter().map(|k| format!("fills[{entry}].regions[{k}].at")));
+    fn miss(&mut self, clicks: &(usize, FillClicks), missed: &[usize]) {
+        let (entry, frame) = (clicks.0, clicks.1.frame);
+        self.report.missed.extend(missed.iter().map(|&click| MissedClick { frame, entry, click }));
     }
 
     /// Puts a painted drawing down.
