@@ -10,6 +10,7 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `strokes`             light curves and hidden lines, for any drawing
 `tween`               drawings between keys
 `lines`               line drawings as strokes, the same strokes on every frame
+`paint`               regions of line drawings, filled on every frame
 `style`               a character's motion given to another drawing
 `bones`               armatures
 `exchange`            documents and masks
@@ -49,12 +50,14 @@ def _classes():
     from .exchange.operators import CLASSES as exchange
     from .farm.operators import CLASSES as farm
     from .lines.operators import CLASSES as lines
+    from .paint.operators import CLASSES as paint
     from .sample.operators import CLASSES as sample
     from .strokes.operators import CLASSES as strokes
     from .style.operators import CLASSES as style
     from .tween.operators import CLASSES as tween
 
-    return properties.CLASSES + capture + strokes + tween + lines + style + bones + exchange + farm + sample + ui.CLASSES
+    own = capture + strokes + tween + lines + paint + style + bones + exchange + farm + sample
+    return properties.CLASSES + own + ui.CLASSES
 
 
 def register():

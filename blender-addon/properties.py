@@ -5,11 +5,12 @@ import bpy
 from .bones.properties import BoneSettings, RototoonBone
 from .capture.properties import CaptureSettings, RototoonPart
 from .lines.properties import LineSettings
+from .paint.properties import FillSettings
 from .style import clip_browser
 from .style.properties import ClipSettings, RototoonBrowser, RototoonClip
 
 
-class RototoonSettings(BoneSettings, ClipSettings, LineSettings, CaptureSettings, bpy.types.PropertyGroup):
+class RototoonSettings(BoneSettings, ClipSettings, FillSettings, LineSettings, CaptureSettings, bpy.types.PropertyGroup):
     """Everything that a file keeps of an object beside its strokes."""
 
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")

@@ -49,6 +49,9 @@ points, or the joints of a curve's pieces."""
 KEY_POINT = "rototoon_key_point"
 """Number of the skeleton's key point that a line across a limb marks, from 1; 0 for none."""
 
+CLICK = "rototoon_click"
+"""Where Paint Bucket was clicked for a filled stroke, in footage pixels (x, y, 1), or (0, 0, 0)."""
+
 TRACK = "rototoon_track"
 """Number that a stroke keeps on all keys, in-betweens and traced drawings of a layer; 0 for none."""
 LINE = "rototoon_line"
@@ -67,6 +70,7 @@ BEFORE = "rototoon_before"
 
 TYPES = {
     KEY_POINT: ("INT", "CURVE"),
+    CLICK: ("FLOAT_VECTOR", "CURVE"),
     TRACK: ("INT", "CURVE"),
     LINE: ("INT", "POINT"),
     LOOK: ("INT", "CURVE"),

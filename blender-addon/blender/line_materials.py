@@ -19,7 +19,7 @@ def known(ob: bpy.types.Object, fill: bool = False) -> list[tuple[int, np.ndarra
     for place, material in enumerate(ob.data.materials):
         style = material.grease_pencil if material is not None else None
         if style is not None and material.name.startswith(NAME) and material.name.startswith(FILL_NAME) == fill:
-            found.append((place, _encoded(np.array((style.fill_color if fill else style.color)[:3], np.float64))))
+            found.append((place, encoded(np.array((style.fill_color if fill else style.color)[:3], np.float64))))
     return found
 
 
@@ -43,5 +43,6 @@ def to_linear(colour: np.ndarray) -> np.ndarray:
     return np.where(colour <= 0.04045, colour / 12.92, ((colour + 0.055) / 1.055) ** 2.4)
 
 
-def _encoded(linear: np.ndarray) -> np.ndarray:
+def encoded(linear: np.ndarray) -> np.ndarray:
+    """Linear values as sRGB-encoded ones."""
     return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear.clip(0) ** (1 / 2.4) - 0.055)

@@ -89,6 +89,16 @@ def read(drawing) -> Content:
     return content
 
 
+def of_rows(rows: gp.Rows) -> Content:
+    """The content of a drawing that has only these strokes."""
+    content = Content(rows.sizes, np.full(len(rows.sizes), POLY, np.int8))
+    for name, values in rows.values.items():
+        (content.point if name == "position" or gp.TYPES[name][1] == "POINT" else content.curve)[name] = values
+        if name != "position":
+            content.kinds[name] = gp.TYPES[name][0]
+    return content
+
+
 def write(drawing, content: Content) -> None:
     """Replaces the content of a drawing."""
     count, have = len(content.sizes), len(gp.offsets(drawing)) - 1
@@ -145,6 +155,16 @@ def ranges(starts: np.ndarray, sizes: np.ndarray) -> np.ndarray:
     return np.repeat(np.asarray(starts, np.int64) - (ends - sizes), sizes) + np.arange(total)
 
 
+def bottom_layer(ob, name: str):
+    """Makes a layer below all others. The active layer stays active, unless the new one is the first."""
+    active = gp.active_layer(ob)
+    made = gp.layer(ob, name)
+    ob.data.layers.move_bottom(made)
+    if active is not None:
+        gp.activate(ob, active)
+    return made
+
+
 def shown_frame(layer, frame: int) -> int | None:
     """The frame of the drawing that a layer shows on `frame`; `None` if it shows none."""
     numbers = [each.frame_number for each in layer.frames if each.frame_number <= frame]
@@ -163,11 +183,17 @@ def editable_layers(ob, active: bool) -> list:
 
 
 def drawn_layers(ob, active: bool) -> list:
-    """The layers with drawings but for those with contours, closed ones too. With `active`, only the active layer."""
+    """The layers with drawings but for those with contours and paint, closed ones too. With `active`, only the active layer, paint too."""
     layers = [ob.data.layers.active] if active else list(ob.data.layers)
     contours = {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}
     layers = [layer for layer in layers if layer is not None and layer.name not in contours]
-    return layers if active else [layer for layer in layers if len(layer.frames)]
+    return layers if active else [layer for layer in layers if len(layer.frames) and not is_paint(ob, layer)]
+
+
+def is_paint(ob, layer) -> bool:
+    """Whether Rototoon has painted on a layer. One that only bears the name is the artist's. Reads no array."""
+    named = layer.name == ob.rototoon.fills_layer
+    return named and any(gp.has(handle, gp.CLICK) for handle, _ in gp.drawings(layer).values())
 
 
 def filled(ob, content: Content) -> np.ndarray:

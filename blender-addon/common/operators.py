@@ -75,15 +75,15 @@ class OnContours(OnDrawing):
 
 
 class OnShapes(OnDrawing):
-    """An operator that needs an active Grease Pencil object with footage, and contours or traced lines."""
+    """An operator that needs an active Grease Pencil object with footage, and contours, traced lines or paint."""
 
     @classmethod
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = OnContours.lacking(ob, changes)
         if why and gp.is_drawing(ob) and ob.rototoon.pattern:
-            lines = gp.find_layer(ob, ob.rototoon.lines_layer)
-            if lines is not None and gp.has_strokes(lines):
+            others = [gp.find_layer(ob, name) for name in (ob.rototoon.lines_layer, ob.rototoon.fills_layer)]
+            if any(layer is not None and gp.has_strokes(layer) for layer in others):
                 return super().lacking(ob, changes)
         return why
 

@@ -55,6 +55,12 @@ EMPTY = st.Content(np.zeros(0, np.int32), np.zeros(0, np.int8))
 """In place of the content of a drawing that was not asked for."""
 
 
+def layers(ob, active: bool = False) -> list:
+    """The layers that may have lines, closed ones too: those without contours, snapped lines and paint. With `active`, only the active
+    layer."""
+    return [layer for layer in st.drawn_layers(ob, active) if layer.name != ob.rototoon.snapped_layer and not st.is_paint(ob, layer)]
+
+
 def sum_of(content: st.Content) -> int:
     """Checksum of the content of a drawing."""
     return records.checksum(content.point["position"], content.strokes(gp.TRACK), content.sizes)

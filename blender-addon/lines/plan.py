@@ -102,22 +102,28 @@ def of_picture(layer: dr.Layer, frame: int, path: str, size: tuple[int, int], ma
 
 def find_held(plan: Plan) -> None:
     """Finds the pictures that are the same file as the one before, as in films on twos. Uses no Blender."""
-    if not plan.hold or not plan.groups:
-        return
-    pattern = plan.groups[0].document["footage"]["pattern"]
+    if plan.hold and plan.groups:
+        pattern = plan.groups[0].document["footage"]["pattern"]
+        plan.held |= held_pictures(pattern, plan.first, plan.last, plan.offset)
+
+
+def held_pictures(pattern: str, first: int, last: int, offset: int) -> set[int]:
+    """The scene frames after the first whose picture is the same file as the one before. The scene shows picture n on frame n + offset."""
+    held: set[int] = set()
     before: tuple[int, bytes] | None = None
-    for frame in range(plan.first, plan.last + 1):
-        path = pattern % (frame - plan.offset)
+    for frame in range(first, last + 1):
+        path = pattern % (frame - offset)
         try:
             size = os.path.getsize(path)
             with open(path, "rb") as file:
                 now = size, hashlib.file_digest(file, "blake2b").digest()
         except OSError:
             # The library says which picture is missing.
-            return
+            return held
         if now == before:
-            plan.held.add(frame)
+            held.add(frame)
         before = now
+    return held
 
 
 def needed(layer: dr.Layer, first: int, last: int) -> set[int]:
@@ -150,7 +156,7 @@ def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last
         if strokes:
             seeds[frame] = seed
             drawn.append({"frame": frame - offset, "strokes": strokes})
-    document = {"rototoon": VERSION, "footage": _footage(ob, pattern), "parts": [], "drawings": drawn}
+    document = {"rototoon": VERSION, "footage": footage_of(ob, pattern), "parts": [], "drawings": drawn}
     return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper)
 
 
@@ -165,7 +171,8 @@ def _content(layer: dr.Layer, frame: int) -> st.Content:
     return layer.keys.get(frame) or layer.made.get(frame) or dr.EMPTY
 
 
-def _footage(ob, pattern: str) -> dict[str, Any]:
+def footage_of(ob, pattern: str) -> dict[str, Any]:
+    """An object's footage in the form of a document."""
     settings = ob.rototoon
     return {
         "pattern": pattern,

@@ -327,7 +327,7 @@ def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
     _dress(rows, frame, strokes, shown, names, materials)
-    rows.values[gp.LOOK] = dr.look_sums(_content(rows))
+    rows.values[gp.LOOK] = dr.look_sums(st.of_rows(rows))
     return rows
 
 
@@ -347,13 +347,6 @@ def _dress(rows: gp.Rows, frame: int, strokes: list[Placed], shown: looks.Looks,
                 rows.values[name][starts[i] : starts[i + 1]] = looks.of_points(found, name, where)
             elif name != "cyclic":
                 rows.values[name][i] = looks.of_stroke(found[0], name)
-
-
-def _content(rows: gp.Rows) -> st.Content:
-    content = st.Content(rows.sizes, np.ones(len(rows.sizes), np.int8))
-    for name, values in rows.values.items():
-        (content.point if name == "position" or gp.TYPES[name][1] == "POINT" else content.curve)[name] = values
-    return content
 
 
 def _radii(points: np.ndarray, widths: np.ndarray, places: np.ndarray, mapping) -> np.ndarray:

@@ -124,7 +124,7 @@ class Filled:
         return flat.cast("d", (last - first, 2)) if last > first else flat.cast("d")
 
 
-def flat(clicks: Iterable[Click | tuple[int, tuple[float, float], tuple[float, float, float]]]) -> tuple[array.array[int], array.array[float], array.array[float]]:
+def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float], array.array[float]]:
     """The frames, places and colours of clicks, as flat arrays."""
     frames, places, colours = array.array("i"), array.array("d"), array.array("d")
     for k, click in enumerate(clicks):

@@ -1,4 +1,4 @@
-"""Traced strokes that are in doubt: the list of them, and how the 3D view shows them.
+"""Traced strokes and painted regions that are in doubt: the list of them, and how the 3D view shows them.
 
 A doubtful stroke is a black line with a yellow one in it, a lost one has red: so they show on white paper, on dark paint and on the
 colours of strokes. The stroke to which Next Doubtful Stroke went is twice as wide.
@@ -13,8 +13,11 @@ import numpy as np
 
 from ..blender import camera
 from ..blender import grease_pencil as gp
+from ..blender import guard
 from ..blender import strokes as st
 from ..lines import doubts
+from ..paint import doubts as regions
+from ..paint import shapes, sheets
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,28 @@ def _of_drawing(handle, matrix: np.ndarray, number: int) -> list[Marked]:
         line = points[starts[i] : starts[i + 1]] @ matrix[:3, :3].T + matrix[:3, 3]
         line = np.concatenate([line, line[:1]]) if cyclic[i] else line
         found.append(Marked(line, bool(verdict[i] == doubts.LOST), bool(tracks[i] == number)))
+    return found
+
+
+def marked_regions(ob, frame: int) -> list[Marked]:
+    """The painted regions of an object whose colour is probably wrong on a frame. Regions that the artist changed are not."""
+    settings = ob.rototoon
+    layer = gp.find_layer(ob, settings.fills_layer)
+    shown = None if layer is None or guard.is_hidden(layer) else st.shown_frame(layer, frame)
+    if shown is None:
+        return []
+    handle, kind = gp.drawings(layer)[shown]
+    if not gp.has(handle, gp.CONFIDENCE):
+        return []
+    sheet, matrix = sheets.of_drawing(handle, kind), camera.layer_to_world(ob, layer)
+    starts, numbers = sheet.content.starts, sheet.content.strokes(gp.TRACK)
+    chosen = settings.fill_doubt_number if settings.fill_doubt_frame == shown else 0
+    found = []
+    for i in regions.of_sheet(sheet):
+        points = sheet.content.point["position"][starts[i] : starts[i + 1]]
+        for loop in shapes.parted(points):
+            line = points[np.append(loop, loop[:1])] @ matrix[:3, :3].T + matrix[:3, 3]
+            found.append(Marked(line, True, bool(numbers[i] == chosen)))
     return found
 
 

@@ -45,6 +45,12 @@ class ROTOTOON_MT_lines(_Menu):
     names = ("trace_drawing", "trace_image", "carry_strokes", "", "next_doubt", "match_lines", "spread_edits", "make_part", "", "clear_lines")
 
 
+class ROTOTOON_MT_paint(_Menu):
+    bl_idname = "ROTOTOON_MT_paint"
+    bl_label = "Paint"
+    names = ("paint_bucket", "fill_drawings", "", "next_doubtful_region", "", "clear_fills")
+
+
 class ROTOTOON_MT_style(_Menu):
     bl_idname = "ROTOTOON_MT_style"
     bl_label = "Style"
@@ -75,7 +81,7 @@ class ROTOTOON_MT_main(_Menu):
         _entries(layout, "", "draw_contours", "new_key", "match_contours", "", "track", "weakest_frame", "show_confidence", "hide_part")
         layout.operator_menu_enum("rototoon.release_pins", "which")
         _entries(layout, "clear_generated", "", "snap", "")
-        for name in ("strokes", "tween", "lines", "style"):
+        for name in ("strokes", "tween", "lines", "paint", "style"):
             layout.menu(f"ROTOTOON_MT_{name}")
         _entries(layout, "", "import_document", "export_document", "contours_to_mask", "")
         _entries(layout, "send_to_farm", "collect_results", "", "help")
@@ -186,6 +192,7 @@ CLASSES = (
     ROTOTOON_MT_strokes,
     ROTOTOON_MT_tween,
     ROTOTOON_MT_lines,
+    ROTOTOON_MT_paint,
     ROTOTOON_MT_style,
     ROTOTOON_MT_footage,
     ROTOTOON_MT_main,

@@ -136,9 +136,8 @@ def _draw() -> None:
     if not gp.is_drawing(ob) or context.space_data is None or not context.space_data.overlay.show_overlays:
         return
     settings, frame = ob.rototoon, context.scene.frame_current
-    if settings.show_doubts:
-        for strokes, colour, width in doubtful(ob, frame):
-            _draw_lines(strokes, colour, width)
+    for strokes, colour, width in doubtful(ob, frame):
+        _draw_lines(strokes, colour, width)
     if not settings.parts or not (settings.show_confidence or settings.show_pins or settings.show_lost):
         return
     import gpu
@@ -159,10 +158,12 @@ def _draw() -> None:
 
 
 def doubtful(ob, frame: int) -> list[tuple[list[np.ndarray], tuple, float]]:
-    """The traced strokes that are in doubt on a frame: lines (N, 3) in the world, with their colour and width. Lost ones are last, so
-    that they are on top."""
+    """The traced strokes and the regions that are in doubt on a frame, where they are marked: lines (N, 3) in the world, with their
+    colour and width. Lost ones are last, so that they are on top."""
     groups: dict[tuple[bool, bool], list[np.ndarray]] = {}
-    for each in doubts.marked(ob, frame):
+    settings = ob.rototoon
+    found = doubts.marked(ob, frame) if settings.show_doubts else []
+    for each in found + (doubts.marked_regions(ob, frame) if settings.show_fill_doubts else []):
         groups.setdefault((each.lost, each.chosen), []).append(each.points)
     return [
         (groups[lost, chosen], LOST_COLOUR if lost else tuple(UNSURE.tolist()), LOST_WIDTH * (2 if chosen else 1))

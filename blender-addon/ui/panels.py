@@ -266,6 +266,33 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         layout.operator("rototoon.clear_lines", icon="TRASH")
 
 
+class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
+    bl_idname = "ROTOTOON_PT_paint"
+    bl_label = "Paint"
+    bl_parent_id = "ROTOTOON_PT_lines"
+    bl_options = CLOSED
+    page = "artist/lines.html#paint"
+
+    def draw(self, context):
+        layout, settings = self.layout, settings_of(context)
+        column = layout.column()
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "fill_colour")
+        column.prop(settings, "fills_layer", text="Layer")
+        column.prop(settings, "fill_confidence")
+        layout.operator("rototoon.paint_bucket", icon="BRUSH_DATA")
+        row = layout.row(align=True)
+        row.scale_y = 1.5
+        row.operator("rototoon.fill_drawings", icon="SNAP_FACE").frames = "ALL"
+        side = row.row(align=True)
+        side.ui_units_x = 4
+        side.operator("rototoon.fill_drawings", text="This Frame").frames = "CURRENT"
+        layout.operator("rototoon.next_doubtful_region", icon="FRAME_NEXT")
+        layout.prop(settings, "show_fill_doubts")
+        layout.operator("rototoon.clear_fills", icon="TRASH")
+
+
 class ROTOTOON_PT_style(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_style"
     bl_label = "Style"
@@ -323,6 +350,7 @@ CLASSES = (
     ROTOTOON_PT_strokes,
     ROTOTOON_PT_tween,
     ROTOTOON_PT_lines,
+    ROTOTOON_PT_paint,
     ROTOTOON_PT_style,
     ROTOTOON_PT_document,
 )

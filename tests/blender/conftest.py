@@ -86,11 +86,11 @@ def addon():
 def empty_file():
     """An empty file before each test; `read_factory_settings` would disable the add-on."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    sessions, tracing = module("capture.sessions"), module("lines.tracing")
-    make, matcher, tracer = sessions.make, sessions.matcher, tracing.make
+    sessions, tracing, filling = module("capture.sessions"), module("lines.tracing"), module("paint.filling")
+    make, matcher, tracer, painter = sessions.make, sessions.matcher, tracing.make, filling.make
     yield
     sessions.clear()
-    sessions.make, sessions.matcher, tracing.make = make, matcher, tracer
+    sessions.make, sessions.matcher, tracing.make, filling.make = make, matcher, tracer, painter
 
 
 @pytest.fixture
@@ -102,6 +102,7 @@ def fake(addon):
     sessions.make = stand_in.Session.from_document
     sessions.matcher = stand_in.match_contours
     addon("lines.tracing").make = stand_in.Tracer.from_document
+    addon("paint.filling").make = stand_in.Painter.from_document
     return stand_in
 
 

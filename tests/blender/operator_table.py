@@ -61,6 +61,10 @@ def described(prop) -> tuple[str, str]:
         whole = prop.type == "INT"
         low, high = (value if abs(value) < RANGE else None for value in (prop.hard_min, prop.hard_max))
         kind = "whole number" if whole else "number"
+        if prop.is_array:
+            defaults = ", ".join(f"{value:.6g}" for value in prop.default_array)
+            limits = f", {low:.6g} to {high:.6g}" if low is not None and high is not None else ""
+            return f"{prop.array_length} {kind}s{limits}", f"`({defaults})`"
         if low is not None and high is not None:
             kind += f", {low:.6g} to {high:.6g}"
         elif low is not None:

@@ -89,6 +89,57 @@ class Tracer:
 
 
 @dataclass
+class Region:
+    """As `rototoon.fills.Region`."""
+
+    track: int
+    outline: np.ndarray
+    holes: list
+    colour: tuple
+    confidence: float
+    doubtful: bool
+
+
+@dataclass
+class Painted:
+    """As `rototoon.fills.Filled`, as far as the add-on uses it: a square around each click, which moves by a pixel from picture to picture."""
+
+    frames: np.ndarray
+    clicks: list
+    start: int
+    missed: list = field(default_factory=list)
+    unrelated: list = field(default_factory=list)
+
+    def on(self, frame):
+        """The regions of a frame."""
+        square = np.array([[-9.0, -9.0], [9.0, -9.0], [9.0, 9.0], [-9.0, 9.0]])
+        return [
+            Region(k, square + click["at"] + [frame - self.start, 0], [], tuple(click["colour"]), 0.9, False)
+            for k, click in enumerate(self.clicks)
+        ]
+
+
+@dataclass
+class Painter:
+    """As `Session`, for paint."""
+
+    state: dict
+
+    @classmethod
+    def from_document(cls, document, folder):
+        return cls(copy.deepcopy(document))
+
+    def fill(self, clicks=None, sensitivity=1.0, frames=None, progress=None, *, confidence=0.0, threads=0):
+        if progress is not None and progress(0.5, "painting") is False:
+            raise Cancelled
+        first = self.state["fills"][0]
+        return Painted(np.arange(frames[0], frames[1] + 1), first["regions"], first["frame"])
+
+    def close(self):
+        pass
+
+
+@dataclass
 class Session:
     """As the add-on's `session.Session`, as far as the add-on uses it."""
 

@@ -19,7 +19,7 @@ import test_import_motion
 import test_style
 
 OBJECT = "shot"
-CONTOURS, SNAPPED, LIMBS, INK, FRONT, LINES = "Contours", "Snapped", "Limbs", "Ink", "Front", "Lines"
+CONTOURS, SNAPPED, LIMBS, INK, FRONT, LINES, PAINT = "Contours", "Snapped", "Limbs", "Ink", "Front", "Lines", "Paint"
 
 
 def build(addon, folder) -> str:
@@ -243,16 +243,33 @@ def _one_traced_and_reference(addon, ob):
     bpy.context.scene.frame_set(3)
 
 
+def _clicked(addon, ob):
+    bpy.ops.rototoon.paint_bucket(place=(20.0, 20.0))
+
+
+def _painted(addon, ob):
+    _clicked(addon, ob)
+    bpy.ops.rototoon.fill_drawings()
+
+
+def _painted_and_doubted(addon, ob):
+    _painted(addon, ob)
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(ob.data.layers[PAINT])[3][0]
+    gp.put(handle, gp.CONFIDENCE, np.full(int(gp.offsets(handle)[-1]), 0.3))
+
+
 def _ink_active(addon, ob):
     ob.data.layers.active = ob.data.layers[INK]
 
 
-_C, _I, _L = frozenset({CONTOURS}), frozenset({INK, FRONT}), frozenset({LINES})
+_C, _I, _L, _P = frozenset({CONTOURS}), frozenset({INK, FRONT}), frozenset({LINES}), frozenset({PAINT})
 _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
     "apply_motion": Call(_C, _C, options=_STYLED),
     "carry_strokes": Call(frozenset({INK}), prepare=_ink_active),
     "choose_body": Call(frozenset({LIMBS}), options={"body": "quadruped"}),
+    "clear_fills": Call(_P, prepare=_painted),
     "clear_generated": Call(_C | {SNAPPED}, options={"corrected": True}),
     "clear_in_betweens": Call(_I, prepare=_in_between),
     "clear_lines": Call(_L, prepare=_traced),
@@ -263,6 +280,7 @@ OPERATORS = {
     "draw_contours": Call(_C, prepare=_beyond_the_end),
     "drive_bones": Call(on="Rig", options={"content": "plain"}),
     "export_document": Call(changes=False, options={"filepath": "{folder}/out.json"}),
+    "fill_drawings": Call(_P, prepare=_clicked),
     "fit_strokes": Call(_I | {SNAPPED}, options={"frames": "ALL"}),
     "footage_from_camera": Call(prepare=_to_camera),
     "footage_from_file": Call(options={"filepath": "{folder}/frames/shot_001.png"}),
@@ -279,8 +297,10 @@ OPERATORS = {
     "match_lines": Call(_L, prepare=_traced, options={"earlier": 1, "later": 2}),
     "match_strokes": Call(_I | {SNAPPED}),
     "next_doubt": Call(prepare=_traced_and_doubted),
+    "next_doubtful_region": Call(prepare=_painted_and_doubted),
     "new_key": Call(_C, _C, prepare=_on_generated),
     "open_sample": Call(changes=False),
+    "paint_bucket": Call(_P, prepare=_clicked, options={"place": (90.0, 60.0)}),
     "refresh_clips": Call(changes=False),
     "release_pins": Call(_C, prepare=_moved_and_tracked, options={"which": "ALL"}),
     "reshape_drawing": Call(_C, _C, options={"character": "plain"}),

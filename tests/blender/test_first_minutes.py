@@ -248,7 +248,7 @@ def drawn_menu(name):
 
 def test_every_operator_is_in_a_menu(addon):
     """Search finds only what menus contain."""
-    names = [f"ROTOTOON_MT_{name}" for name in ("main", "footage", "strokes", "tween", "lines", "style", "armature", "pie")]
+    names = [f"ROTOTOON_MT_{name}" for name in ("main", "footage", "strokes", "tween", "lines", "paint", "style", "armature", "pie")]
     found = {entry[1] for name in names for entry in drawn_menu(name) if entry[0] == "operator"}
     known = {f"rototoon.{name}" for name in dir(bpy.ops.rototoon)}
     assert known - found == set() and {entry[1] for entry in drawn_menu("ROTOTOON_MT_main") if entry[0] == "menu"} <= set(names)

@@ -9,13 +9,13 @@ from ...blender.errors import Problem
 from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
-from .. import files, traced
+from .. import files, filled, traced
 
 
 class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     bl_idname = "rototoon.export_document"
     bl_label = "Export Document"
-    bl_description = "Write keys, corrections, tracks, snapped and traced lines as a Rototoon project document"
+    bl_description = "Write keys, corrections, tracks, snapped and traced lines and paint as a Rototoon project document"
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
 
@@ -38,13 +38,23 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         lines = traced.of(context.object)
         if lines:
             reading.document["traced"] = lines
+        paint = self._add_paint(context.object, reading.document)
         files.save(path, reading.document)
         reshaped = snapping.reshaped(context.object)
         if reshaped:
             self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them anew")
-        found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not lines else []
+        found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not (lines or paint) else []
         found += [f"traced lines of {counted(len(lines), 'frame')}"] if lines else []
+        found += [f"paint of {counted(paint, 'frame')}"] if paint else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
+
+    def _add_paint(self, ob, written: dict) -> int:
+        """Puts paint into a document. Returns the number of frames that have some."""
+        fills, regions = filled.of(ob)
+        for name, value in (("fills", fills), ("filled", regions)):
+            if value:
+                written[name] = value
+        return len({each["frame"] for each in fills + regions})
 
 
 CLASSES = (ROTOTOON_OT_export_document,)

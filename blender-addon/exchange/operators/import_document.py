@@ -9,13 +9,13 @@ from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
 from ...common.wording import counted
-from .. import files, importing, traced
+from .. import files, filled, importing, traced
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     bl_idname = "rototoon.import_document"
     bl_label = "Import Document"
-    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks, snapped and traced lines"
+    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks, snapped and traced lines, paint"
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE"})
@@ -45,6 +45,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         path = bpy.path.abspath(self.filepath)
         project = files.load(path)
         traced.checked(project)
+        filled.read(project)
         shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
         if self.into == "ACTIVE":
             ob = context.object
@@ -52,6 +53,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
                 raise Problem("Make a Grease Pencil object active, or import into a new one")
             importing.need_open(ob)
             traced.need_open(ob, project)
+            filled.need_open(ob, project)
             stage.assign(ob, shot)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
@@ -59,10 +61,11 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
         context.view_layer.update()
         importing.apply(ob, project)
-        lines = traced.draw(ob, project)
+        lines, paint = traced.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
         ob.data.update_tag()
         also = f" and {counted(lines, 'traced stroke')}" if lines else ""
+        also += f" and paint of {counted(paint, 'frame')}" if paint else ""
         return f"{counted(len(ob.rototoon.parts), 'part')}{also} from {os.path.basename(path)}"
 
     def _shot(self, context, shot: dict, folder: str) -> stage.Shot:

@@ -4,8 +4,8 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
-from ...blender import strokes as st
 from ...blender.errors import Problem
+from .. import drawings as dr
 from .tracing_base import Tracing
 
 
@@ -23,7 +23,7 @@ class ROTOTOON_OT_carry_strokes(Tracing, bpy.types.Operator):
         description="Whose strokes are carried",
         items=(
             ("ACTIVE", "Active", "The active layer"),
-            ("ALL", "All", "All layers that are neither locked nor hidden, but for those with contours and snapped lines"),
+            ("ALL", "All", "All layers that are neither locked nor hidden, but for those with contours, snapped lines and paint"),
         ),
     )
     new_lines: bpy.props.BoolProperty(
@@ -47,9 +47,9 @@ class ROTOTOON_OT_carry_strokes(Tracing, bpy.types.Operator):
 
 def _layers(ob, active: bool) -> list:
     """The layers whose strokes are carried, closed ones too."""
-    wanted = [layer for layer in st.drawn_layers(ob, active) if layer.name != ob.rototoon.snapped_layer]
+    wanted = dr.layers(ob, active)
     if not wanted:
-        what = "The active layer has contours or snapped lines: make" if active else "There are no drawings to carry: draw on"
+        what = "The active layer has contours, snapped lines or paint: make" if active else "There are no drawings to carry: draw on"
         raise Problem(f"{what} another layer active" if active else f"{what} a layer of your own")
     return wanted
 

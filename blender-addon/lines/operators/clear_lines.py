@@ -4,7 +4,6 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
-from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted
 from .. import drawings as dr
@@ -24,11 +23,11 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = super().lacking(ob, changes)
-        return why or ("" if any(dr.is_lines(layer) for layer in _layers(ob)) else "Nothing is traced yet")
+        return why or ("" if any(dr.is_lines(layer) for layer in dr.layers(ob)) else "Nothing is traced yet")
 
     def run(self, context) -> str:
         ob = context.object
-        wanted = [layer for layer in _layers(ob) if dr.is_lines(layer)]
+        wanted = [layer for layer in dr.layers(ob) if dr.is_lines(layer)]
         guard.need_some(wanted)
         self.warn(guard.left_out(wanted))
         kept, removed = records.read(ob.data), 0
@@ -40,10 +39,6 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
         records.write(ob.data, kept)
         ob.data.update_tag()
         return f"{counted(removed, 'traced drawing')} removed"
-
-
-def _layers(ob) -> list:
-    return [layer for layer in st.drawn_layers(ob, active=False) if layer.name != ob.rototoon.snapped_layer]
 
 
 CLASSES = (ROTOTOON_OT_clear_lines,)

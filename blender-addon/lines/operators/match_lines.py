@@ -4,10 +4,10 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
-from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common.operators import OnDrawing
 from ...tween.operators.pairs_base import Pairing
+from .. import drawings as dr
 from .. import pairing
 
 
@@ -49,9 +49,8 @@ class ROTOTOON_OT_match_lines(Pairing, bpy.types.Operator):
 
 
 def numbered(ob) -> list:
-    """The layers with numbered strokes that are no contours or snapped lines."""
-    layers = [layer for layer in st.drawn_layers(ob, active=False) if layer.name != ob.rototoon.snapped_layer]
-    return [layer for layer in layers if any(gp.has(handle, gp.LINE) for handle, _ in gp.drawings(layer).values())]
+    """The layers with numbered strokes that are no contours, snapped lines or paint."""
+    return [layer for layer in dr.layers(ob) if any(gp.has(handle, gp.LINE) for handle, _ in gp.drawings(layer).values())]
 
 
 CLASSES = (ROTOTOON_OT_match_lines,)

@@ -28,23 +28,10 @@ class OnFootage(OnDrawing):
         return super().lacking(ob, changes) or ("" if ob.rototoon.pattern else "Choose the footage first, in the panel Footage")
 
 
-class Tracing(Long, OnFootage):
-    """Traces in a thread, and writes the strokes in slices."""
+class Framed:
+    """An operator that draws on frames of the footage."""
 
     frames: bpy.props.EnumProperty(name="Frames", description="Which frames are drawn", items=FRAMES)
-    style: bpy.props.EnumProperty(
-        name="Drawing",
-        description="The kind of drawing",
-        items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
-    )
-    sensitivity: bpy.props.FloatProperty(
-        name="Sensitivity",
-        description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
-        default=0.0,
-        min=0.0,
-        max=10.0,
-    )
-
     hold: bpy.props.BoolProperty(
         name="Hold",
         description="A frame with the same picture as the one before, as in films on twos, holds its drawing",
@@ -61,6 +48,23 @@ class Tracing(Long, OnFootage):
         if scene.use_preview_range:
             return scene.frame_preview_start, scene.frame_preview_end
         return scene.frame_start, scene.frame_end
+
+
+class Tracing(Framed, Long, OnFootage):
+    """Traces in a thread, and writes the strokes in slices."""
+
+    style: bpy.props.EnumProperty(
+        name="Drawing",
+        description="The kind of drawing",
+        items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
+    )
+    sensitivity: bpy.props.FloatProperty(
+        name="Sensitivity",
+        description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
+        default=0.0,
+        min=0.0,
+        max=10.0,
+    )
 
     def start(self, context, names: list[str], home: str, new: bool):
         """The worker for some layers. New strokes go to the layer `home`."""

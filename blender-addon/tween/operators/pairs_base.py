@@ -64,7 +64,7 @@ class Pairing(OnDrawing, Reporting):
         if event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
             return self._leave(context)
         if event.type == "LEFTMOUSE":
-            view = _view_at(context, event)
+            view = view_at(context, event)
             # Buttons and menus get no clicks: they could change the drawings.
             if view is not None and event.value == "PRESS":
                 self._clicked(context, event, *view)
@@ -165,7 +165,7 @@ class Undone:
         self.happened = True
 
 
-def _view_at(context, event):
+def view_at(context, event):
     """The region and view of the 3D view under the mouse, if it is over one."""
     for area in context.window.screen.areas:
         if area.type != "VIEW_3D":

@@ -1,0 +1,176 @@
+"""Paint Bucket: one click fills the region of the picture, as a shape of the artist.
+
+Shapes that the bucket made on the drawing and nobody has changed since are drawn again with each click: a click of another colour into a
+region that leaks parts it, and the shape before must give way.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..blender import camera, colours, footage
+from ..blender import grease_pencil as gp
+from ..blender import guard
+from ..blender import strokes as st
+from ..blender.errors import Problem
+from ..lines import plan as lines_plan
+from . import clicks, filling, painted, shapes, sheets
+from . import plan as pl
+
+MOSTLY = 0.9
+"""Share of a shape within a region from which the shape is that region's, and gives way to a new click."""
+
+
+@dataclass(frozen=True)
+class Before:
+    """What a click changed: to take it back."""
+
+    frame: int
+    content: st.Content | None
+    """The drawing before; `None` if there was none."""
+    kind: str = ""
+
+
+def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...], sensitivity: float) -> Before:
+    """Fills the region at a place of the picture (footage pixels) with a colour (sRGB). Raises a `Problem` on a line."""
+    guard.need(ob)
+    name = pl.layer_name(ob)
+    pattern = footage.pattern_of(ob)
+    low, high = lines_plan.film(ob)
+    if not low <= frame <= high:
+        raise Problem(f"There is no picture on frame {frame}: the footage is on frames {low} to {high}")
+    drawn = sheets.read(ob, name)
+    frame = _shown(pattern, drawn, frame, ob.rototoon.frame_offset)
+    mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
+    sheet = drawn.get(frame) or sheets.Sheet(st.of_rows(painted.rows(ob, [], mapping, painted.Palette())), np.zeros(0, bool), gp.KEYFRAME)
+    own = clicks.of(ob, sheet, mapping, ob.rototoon.height)
+    new = clicks.Click((float(place[0]), float(place[1])), tuple(np.round(colour, 6).tolist()), -1)
+    regions = _regions(ob, pattern, frame, [*own, new], sensitivity)
+    if _at(regions, new.at) is None:
+        raise Problem("There is a line here, or no picture: click inside of a region")
+    _write(ob, name, frame, sheet, mapping, regions, own, new)
+    return Before(frame, sheet.content if frame in drawn else None, sheet.kind)
+
+
+def take_back(ob, before: Before) -> None:
+    """Brings a drawing back as it was before a click."""
+    layer = gp.find_layer(ob, ob.rototoon.fills_layer)
+    drawings = {} if layer is None else gp.drawings(layer)
+    if before.frame not in drawings:
+        return
+    if before.content is None:
+        gp.remove_frames(layer, [before.frame])
+    else:
+        st.write(drawings[before.frame][0], before.content)
+        gp.set_keyframe_type(layer, {before.frame: before.kind})
+    ob.data.update_tag()
+
+
+def _shown(pattern: str, drawn: dict[int, sheets.Sheet], frame: int, offset: int) -> int:
+    """The frame of the drawing that is painted: the one that is shown, if its picture is the same."""
+    shown = max((each for each in drawn if each <= frame), default=frame)
+    if shown == frame or shown < frame - MOST_HELD:
+        return frame
+    held = lines_plan.held_pictures(pattern, shown, frame, offset)
+    return shown if held.issuperset(range(shown + 1, frame + 1)) else frame
+
+
+MOST_HELD = 100
+"""Most frames that a held drawing is looked for."""
+
+
+def _regions(ob, pattern: str, frame: int, asked: list[clicks.Click], sensitivity: float) -> list[painted.Region]:
+    number = frame - ob.rototoon.frame_offset
+    fills = [{"frame": number, "regions": [{"at": list(click.at), "colour": list(click.colour)} for click in asked]}]
+    shown = lines_plan.footage_of(ob, pattern)
+    document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
+    session = filling.make(document, os.path.dirname(pattern))
+    try:
+        return filling.regions_on(session.fill(None, sensitivity, (number, number)), number)
+    finally:
+        session.close()
+
+
+def _at(regions: list[painted.Region], place: tuple[float, float]) -> painted.Region | None:
+    """The region at a place. Regions of a picture do not lie over each other."""
+    return next((region for region in regions if shapes.inside(region.loops, np.array([place]))[0]), None)
+
+
+def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own: list[clicks.Click], new: clicks.Click) -> None:
+    target = _at(regions, new.at)
+    again = [click for click in own if _is_buckets(sheet.content, click.stroke) and _at(regions, click.at) not in (None, target)]
+    stale = {click.stroke for click in again} | _within(ob, sheet, mapping, target)
+    rest = sheets.chosen(sheet.content, [i for i in range(len(sheet.made)) if i not in stale])
+    asked = [*again, new]
+    palette = painted.Palette()
+    for click in own:
+        palette.add(click.colour, sheet.content, click.stroke)
+    drawn = [_own_region(_at(regions, click.at), click) for click in asked]
+    rows = painted.rows(ob, drawn, mapping, palette, rest.strokes("fill_id").tolist())
+    rows.values[gp.MADE] = np.zeros(len(asked), bool)
+    # The library has numbered this frame alone. Fill Drawings gives the new shape its number.
+    numbers = sheet.content.strokes(gp.TRACK)
+    rows.values[gp.TRACK] = np.array([*(numbers[click.stroke] for click in again), 0], np.int32)
+    rows.values[gp.CLICK] = np.array([(*click.at, 1.0) for click in asked], np.float32)
+    layer = filling.layer_of(ob, name)
+    gp.make_frames(layer, [frame], gp.KEYFRAME)
+    st.write(gp.drawings(layer)[frame][0], st.joined(rest, st.of_rows(rows)))
+    if sheet.kind == gp.GENERATED:
+        gp.set_keyframe_type(layer, {frame: gp.KEYFRAME})
+    ob.data.update_tag()
+
+
+def _own_region(region: painted.Region, click: clicks.Click) -> painted.Region:
+    return painted.Region(region.number, region.outline, region.holes, np.array(click.colour))
+
+
+def _is_buckets(content: st.Content, stroke: int) -> bool:
+    """Whether the bucket made a stroke, and it is where the bucket put it."""
+    tracked, span = content.point.get(gp.TRACKED), slice(*content.starts[stroke : stroke + 2])
+    same = tracked is not None and np.array_equal(tracked[span], content.point["position"][span])
+    return bool(content.strokes(gp.CLICK)[stroke][2] > 0 and same)
+
+
+def _within(ob, sheet: sheets.Sheet, mapping, region: painted.Region) -> set[int]:
+    """The strokes of a drawing that fill only this region: a new click replaces them. Small shapes that the artist drew within it stay."""
+    found: set[int] = set()
+    for shape in sheets.shapes_of(ob, sheet.content, mapping, range(len(sheet.made))):
+        places = shapes.middles(shape.loops)
+        if not len(places) or shapes.inside(region.loops, places).mean() < MOSTLY:
+            continue
+        first = shape.strokes[0]
+        if sheet.made[first] or _is_buckets(sheet.content, first) or region.covered([shape]):
+            found.update(shape.strokes)
+    return found
+
+
+def pixel_of(ob, frame: int, start: np.ndarray, way: np.ndarray) -> tuple[float, float]:
+    """The pixel of the footage that a ray of the world meets on the drawing plane."""
+    name = ob.rototoon.fills_layer
+    mapping = pl.mapper_of(ob, name, sheets.read(ob, name), [frame]).at(0, frame)
+    back = np.linalg.inv(camera.layer_to_world(ob, gp.find_layer(ob, name)))
+    start, way = back[:3, :3] @ start + back[:3, 3], back[:3, :3] @ way
+    along = float(way @ mapping.normal)
+    if abs(along) < 1e-9:
+        raise Problem("The drawing plane is seen edge-on: look through the camera (numpad 0)")
+    x, y = mapping.to_pixels(start + way * (((mapping.point - start) @ mapping.normal) / along))
+    return float(x), float(y)
+
+
+def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] | None:
+    """The colour of the paint at a place (footage pixels) on a frame; `None` if there is none."""
+    name = ob.rototoon.fills_layer
+    drawn = sheets.read(ob, name)
+    shown = max((each for each in drawn if each <= frame), default=None)
+    if shown is None:
+        return None
+    content = drawn[shown].content
+    mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
+    seen = colours.of_strokes(ob, content, colours.palette(ob))
+    for shape in reversed(sheets.shapes_of(ob, content, mapping, range(len(content.sizes)))):
+        if shapes.inside(shape.loops, np.array([place], np.float64))[0]:
+            return tuple(seen[shape.strokes[0]].clip(0, 1).tolist())
+    return None

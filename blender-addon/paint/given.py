@@ -1,0 +1,75 @@
+"""Clicks and regions that a document gives, as a layer with paint.
+
+A region in which a click has the region's colour is a shape of the artist; all others are generated. A click without a region is a small
+disc: Fill Drawings paints its region.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from rototoon.fills import Click
+
+from ..blender import grease_pencil as gp
+from ..blender import guard
+from ..blender import strokes as st
+from ..blender.placement import Mapper
+from . import filling, painted, shapes, sheets
+
+DISC = 0.008
+"""Radius of a disc, as a share of the picture's height."""
+
+
+def need_open(ob) -> None:
+    """Raises a `Problem` if the layer with paint may not be written."""
+    guard.need_open([gp.find_layer(ob, ob.rototoon.fills_layer)])
+
+
+def draw(ob, clicks: Mapping[int, Sequence[Click]], regions: Mapping[int, list[painted.Region]]) -> int:
+    """Draws clicks and regions by scene frame, in the place of all generated drawings. The artist's drawings stay. Returns the number of
+    frames."""
+    name = ob.rototoon.fills_layer
+    drawn, layer = sheets.read(ob, name), filling.layer_of(ob, name)
+    kept = {frame for frame, sheet in drawn.items() if len(sheet.own) or sheet.blank}
+    gp.remove_frames(layer, sorted(drawn.keys() - kept))
+    frames = sorted((clicks.keys() | regions.keys()) - kept)
+    mapper, palette = Mapper(ob, frames, {}, [name]), painted.Palette()
+    gp.make_frames(layer, frames, gp.GENERATED)
+    handles, own = gp.drawings(layer), {}
+    for frame in frames:
+        asked, found = clicks.get(frame, ()), list(regions.get(frame, ()))
+        shown = [_clicked(click, found, ob.rototoon.height) for click in asked]
+        rest = [region for region in found if not any(region is each for each in shown)]
+        if asked:
+            own[frame] = gp.KEYFRAME
+        _write(ob, handles[frame][0], mapper.at(0, frame), palette, rest, shown, asked)
+    gp.set_keyframe_type(layer, own)
+    ob.data.update_tag()
+    return len(frames)
+
+
+def _clicked(click: Click, regions: list[painted.Region], height: int) -> painted.Region:
+    """The region of a click, or a disc."""
+    place, colour = np.array([click.at]), np.array(click.colour)
+    for region in regions:
+        if np.abs(region.colour - colour).max() < SAME and shapes.inside(region.loops, place)[0]:
+            return region
+    turn = 2 * np.pi * np.arange(12) / 12
+    return painted.Region(0, place + DISC * height * np.stack([np.cos(turn), np.sin(turn)], 1), [], colour)
+
+
+SAME = 1e-4
+"""Largest difference of equal colours."""
+
+
+def _write(ob, handle, mapping, palette, rest: list[painted.Region], shown: list[painted.Region], asked: Sequence[Click]) -> None:
+    # Two clicks may be in one region.
+    once = {id(region): (region, click) for region, click in zip(shown, asked)}
+    made = painted.rows(ob, rest, mapping, palette)
+    own = painted.rows(ob, [region for region, _ in once.values()], mapping, palette, made.values.get("fill_id", np.zeros(0)).tolist())
+    count = len(once)
+    own.values[gp.MADE] = np.zeros(count, bool)
+    own.values[gp.CLICK] = np.array([(*click.at, 1.0) for _, click in once.values()], np.float32).reshape(count, 3)
+    own.values[gp.CONFIDENCE] = np.ones(int(own.sizes.sum()), np.float32)
+    st.write(handle, st.joined(st.of_rows(made), st.of_rows(own)))

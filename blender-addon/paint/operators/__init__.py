@@ -1,0 +1,7 @@
+"""The operators of this package, one a file."""
+
+from . import clear_fills, fill_drawings, next_doubtful_region, paint_bucket
+
+_MODULES = (paint_bucket, fill_drawings, next_doubtful_region, clear_fills)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

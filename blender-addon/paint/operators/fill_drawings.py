@@ -1,0 +1,53 @@
+"""Fill Drawings: the artist's colours on all frames."""
+
+import bpy
+
+from ...blender import preferences
+from ...common.operators import Long
+from ...common.wording import counted, listed
+from ...lines.operators.tracing_base import Framed, OnFootage
+from .. import filling
+from .. import plan as pl
+
+
+class ROTOTOON_OT_fill_drawings(Framed, Long, OnFootage, bpy.types.Operator):
+    bl_idname = "rototoon.fill_drawings"
+    bl_label = "Fill Drawings"
+    bl_description = (
+        "Paint the regions of all drawings with the colours of the shapes that you filled on one frame or several, on a layer below the "
+        "lines. Your shapes stay as they are. Change a region on a later frame and press it again: what follows has that colour, too"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    sensitivity: bpy.props.FloatProperty(
+        name="Sensitivity",
+        description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
+        default=0.0,
+        min=0.0,
+        max=10.0,
+    )
+
+    def begin(self, context):
+        self._ob = context.object
+        settings = self._ob.rototoon
+        self._plan = pl.make(self._ob, pl.layer_name(self._ob), *self.span(context))
+        self._plan.hold = self.hold
+        # The least sensitivity is 0.1; 0 means that of the panel.
+        sensitivity = max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
+        return filling.worker(self._plan, filling.Options(sensitivity, settings.fill_confidence, preferences.threads()))
+
+    def finish(self, _context, work):
+        done = yield from filling.finishing(self._ob, self._plan, work.result)
+        self.warn(f"on {listed(sorted(done.missed))} a shape of yours lies on a line" if done.missed else "")
+        self.warn(f"not painted, since no drawing of yours shows the same: {listed(sorted(done.unrelated))}" if done.unrelated else "")
+        self.warn(_doubts(done))
+        return f"{counted(done.regions, 'region')} on {counted(len(done.frames), 'frame')}"
+
+
+def _doubts(done: filling.Done) -> str:
+    count = sum(done.doubtful.values())
+    are = "1 region is" if count == 1 else f"{count} regions are"
+    return f"{are} probably wrong: press Next Doubtful Region" if count else ""
+
+
+CLASSES = (ROTOTOON_OT_fill_drawings,)

@@ -1,0 +1,129 @@
+"""Paint Bucket: fills the regions of the picture in which the artist clicks."""
+
+import bpy
+import numpy as np
+from bpy_extras import view3d_utils
+from rototoon import RototoonError
+
+from ...blender import windows
+from ...blender.errors import Problem
+from ...common import jobs
+from ...common.operators import NAVIGATION, Reporting
+from ...common.wording import counted
+from ...lines.operators.tracing_base import OnFootage
+from ...tween.operators.pairs_base import Undone, view_at
+from .. import bucket
+
+HELP = "Click into a region to fill it, Ctrl-click to take a colour, Ctrl Z to undo, Esc to leave"
+
+
+class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
+    bl_idname = "rototoon.paint_bucket"
+    bl_label = "Paint Bucket"
+    bl_description = (
+        "Click into regions of the picture on the current frame to fill them with the colour of the panel. Ctrl-click a filled region to "
+        "take its colour. Fill Drawings carries the colours to the other frames"
+    )
+    # Without REGISTER: repeating the operator with other settings would undo the artist's clicks.
+    bl_options = {"UNDO"}
+
+    place: bpy.props.FloatVectorProperty(
+        name="Place", description="Pixel of the footage to fill, for scripts; negative for none", size=2, default=(-1.0, -1.0)
+    )
+
+    def execute(self, context):
+        """Called by Blender."""
+        jobs.clear_the_way()
+        return self.attempt(lambda: self._once(context))
+
+    def _once(self, context):
+        if min(self.place) < 0:
+            raise Problem("place: found none, expected a pixel of the footage")
+        self._fill(context, tuple(self.place))
+        return self.done("1 region filled")
+
+    def _fill(self, context, place: tuple[float, float]) -> None:
+        ob = context.object
+        colour, sensitivity = tuple(ob.rototoon.fill_colour), ob.rototoon.line_sensitivity
+        self._stack = [*self._stack, bucket.paint(ob, context.scene.frame_current, place, colour, sensitivity)]
+
+    _stack: list[bucket.Before] = []
+    _undone = None
+
+    def invoke(self, context, _event):
+        """Called by Blender: takes clicks until the artist leaves."""
+        if bpy.app.background or context.window is None:
+            return self.execute(context)
+        jobs.clear_the_way()
+        self._stack, self._undone = [], Undone()
+        context.window.cursor_modal_set("PAINT_BRUSH")
+        context.window_manager.modal_handler_add(self)
+        self._tell(context)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        """Called by Blender."""
+        if self._undone.happened:
+            self._close(context)
+            self.report({"WARNING"}, f"{self.bl_label} ends, since something was undone")
+            return {"CANCELLED"}
+        if event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
+            self._close(context)
+            return self.done(f"{counted(len(self._stack), 'region')} filled") if self._stack else {"CANCELLED"}
+        if event.type == "LEFTMOUSE":
+            return self._mouse(context, event)
+        if event.type == "Z" and event.ctrl and event.value == "PRESS":
+            if self._stack:
+                bucket.take_back(context.object, self._stack.pop())
+                self._tell(context)
+            return {"RUNNING_MODAL"}
+        return {"PASS_THROUGH"} if event.type in NAVIGATION or event.type in FRAMES else {"RUNNING_MODAL"}
+
+    def _mouse(self, context, event):
+        view = view_at(context, event)
+        if view is None:
+            # The colour of the panel may be changed meanwhile.
+            return {"PASS_THROUGH"}
+        if event.value == "PRESS":
+            try:
+                self._clicked(context, event, *view)
+            except (Problem, RototoonError) as problem:
+                context.workspace.status_text_set(f"{problem}.   {HELP}")
+        return {"RUNNING_MODAL"}
+
+    def _clicked(self, context, event, region, view) -> None:
+        ob, frame = context.object, context.scene.frame_current
+        at = event.mouse_x - region.x, event.mouse_y - region.y
+        start = np.array(view3d_utils.region_2d_to_origin_3d(region, view, at))
+        way = np.array(view3d_utils.region_2d_to_vector_3d(region, view, at))
+        place = bucket.pixel_of(ob, frame, start, way)
+        if event.ctrl:
+            taken = bucket.colour_at(ob, frame, place)
+            if taken is not None:
+                ob.rototoon.fill_colour = taken
+        else:
+            self._fill(context, place)
+        self._tell(context)
+
+    def _tell(self, context) -> None:
+        context.workspace.status_text_set(f"{counted(len(self._stack), 'region')} filled.   {HELP}")
+        windows.redraw_views()
+
+    def cancel(self, context):
+        """Called by Blender when it loads a file or quits meanwhile."""
+        self._close(context)
+
+    def _close(self, context) -> None:
+        if self._undone is not None:
+            self._undone.stop()
+            self._undone = None
+        if context.window is not None:
+            context.window.cursor_modal_restore()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+
+
+FRAMES = {"LEFT_ARROW", "RIGHT_ARROW", "UP_ARROW", "DOWN_ARROW"}
+"""Keys that go to other frames, which are painted too."""
+
+CLASSES = (ROTOTOON_OT_paint_bucket,)

@@ -1,0 +1,102 @@
+"""Regions as generated strokes, with the materials of the artist's shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..blender import fill_materials
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from ..lines import drawings as dr
+from . import sheets, shapes
+
+COVERED = 0.9
+"""Share of a region that the artist's own shapes must cover so that it is not painted once more below them."""
+
+
+@dataclass
+class Region:
+    """A region on one frame."""
+
+    number: int
+    """Its number on the layer, from 1."""
+    outline: np.ndarray
+    """Footage pixels (N, 2)."""
+    holes: list[np.ndarray]
+    colour: np.ndarray
+    """sRGB from 0 to 1."""
+    confidence: float = 1.0
+
+    @property
+    def loops(self) -> list[np.ndarray]:
+        """Its outline, and those of its holes."""
+        return [self.outline, *self.holes]
+
+    def covered(self, own: Iterable[sheets.Shape]) -> bool:
+        """Whether shapes cover it."""
+        places = shapes.middles(self.loops)
+        under = np.zeros(len(places), bool)
+        for shape in own:
+            under |= shapes.inside(shape.loops, places)
+        return len(places) > 0 and under.mean() >= COVERED
+
+
+@dataclass
+class Palette:
+    """The material and the tint of each colour: those of the artist's shapes. Other colours get materials of their own."""
+
+    looks: dict[tuple[float, ...], tuple[int, np.ndarray]] = field(default_factory=dict)
+
+    def add(self, colour: tuple[float, ...], content: st.Content, stroke: int) -> None:
+        """Adds the look of a stroke of the artist. The first one of a colour counts."""
+        look = int(content.strokes("material_index")[stroke]), content.strokes("fill_color")[stroke].copy()
+        self.looks.setdefault(tuple(colour), look)
+
+    def of(self, ob, colour: np.ndarray) -> tuple[int, np.ndarray]:
+        """Material and tint of a colour."""
+        for known, look in self.looks.items():
+            if np.abs(np.array(known) - colour).max() <= fill_materials.SAME:
+                return look
+        look = fill_materials.material(ob, colour), np.zeros(4, np.float32)
+        self.looks[tuple(np.round(colour, 6).tolist())] = look
+        return look
+
+
+def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[int] = ()) -> gp.Rows:
+    """Regions as attributes of generated strokes. `taken` are the fills of other strokes of the drawing."""
+    lines = [shapes.joined(region.outline, region.holes) for region in regions]
+    found = gp.Rows(np.array([len(line) for line in lines], np.int32))
+    total, count = int(found.sizes.sum()), len(lines)
+    for name in ("radius", "opacity"):
+        found.values[name] = gp.blank(name, total)
+    places = mapping.to_layer(np.concatenate(lines)) if total else np.zeros((0, 3))
+    found.values["position"] = found.values[gp.TRACKED] = places.astype(np.float32)
+    found.values["cyclic"] = found.values[gp.MADE] = np.ones(count, bool)
+    found.values[gp.CLICK] = gp.blank(gp.CLICK, count)
+    found.values[gp.TRACK] = np.array([region.number for region in regions], np.int32)
+    found.values[gp.CONFIDENCE] = np.repeat(np.array([region.confidence for region in regions], np.float32), found.sizes)
+    looks = [palette.of(ob, region.colour) for region in regions]
+    found.values["material_index"] = np.array([material for material, _ in looks], np.int32)
+    found.values["fill_color"] = np.array([tint for _, tint in looks], np.float32).reshape(count, 4)
+    if gp.FILL_BY_ID:
+        found.values["fill_id"] = _fills([region.number for region in regions], set(taken))
+        found.values["hide_stroke"] = np.ones(count, bool)
+    found.values[gp.LOOK] = dr.look_sums(st.of_rows(found)) if count else gp.blank(gp.LOOK, 0)
+    return found
+
+
+def _fills(numbers: list[int], taken: set[int]) -> np.ndarray:
+    """A number for each fill that no other stroke has: strokes with one number are one shape."""
+    spare = max([gp.FILL_BASE + max(numbers, default=0), *taken]) + 1
+    found: list[int] = []
+    for number in numbers:
+        own = gp.FILL_BASE + number
+        if own in taken:
+            own, spare = spare, spare + 1
+        taken.add(own)
+        found.append(own)
+    return np.array(found, np.int32)
+

@@ -1,0 +1,37 @@
+"""Properties that a file keeps of an object's paint."""
+
+from __future__ import annotations
+
+import bpy
+
+
+class FillSettings:
+    """Settings of paint, in the property `rototoon` of every object."""
+
+    fills_layer: bpy.props.StringProperty(
+        name="Paint", description="Layer with the filled regions. Your own shapes on it say which region has which colour", default="Paint"
+    )
+    fill_colour: bpy.props.FloatVectorProperty(
+        name="Colour",
+        description="Colour of Paint Bucket. Each colour has one material: change its fill there, and it changes on all frames",
+        subtype="COLOR_GAMMA",
+        size=3,
+        min=0.0,
+        max=1.0,
+        default=(0.93, 0.76, 0.62),
+    )
+    fill_confidence: bpy.props.FloatProperty(
+        name="Least Confidence",
+        description="Regions whose colour is less sure than this stay unpainted. At 0 all regions are painted",
+        default=0.0,
+        min=0.0,
+        max=1.0,
+        subtype="FACTOR",
+    )
+    show_fill_doubts: bpy.props.BoolProperty(
+        name="Mark Doubtful Regions",
+        description="Draw a line in black and red around regions whose colour is probably wrong",
+        default=True,
+    )
+    fill_doubt_frame: bpy.props.IntProperty(default=0)
+    fill_doubt_number: bpy.props.IntProperty(default=0)
