@@ -31,7 +31,9 @@ class Before:
     frame: int
     content: st.Content | None
     """The drawing before; `None` if there was none."""
-    kind: str = ""
+    kind: str
+    after: int
+    """Checksum of the artist's strokes after the click."""
 
 
 def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...], sensitivity: float) -> Before:
@@ -52,19 +54,21 @@ def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...],
     if _at(regions, new.at) is None:
         raise Problem("There is a line here, or no picture: click inside of a region")
     _write(ob, name, frame, sheet, mapping, regions, own, new)
-    return Before(frame, sheet.content if frame in drawn else None, sheet.kind)
+    after = sheets.read(ob, name)[frame].sum()
+    return Before(frame, sheet.content if frame in drawn else None, sheet.kind, after)
 
 
 def take_back(ob, before: Before) -> None:
-    """Brings a drawing back as it was before a click."""
-    layer = gp.find_layer(ob, ob.rototoon.fills_layer)
-    drawings = {} if layer is None else gp.drawings(layer)
-    if before.frame not in drawings:
-        return
+    """Brings a drawing back as it was before a click. Raises a `Problem` if something else has changed it since."""
+    name = ob.rototoon.fills_layer
+    layer, drawn = gp.find_layer(ob, name), sheets.read(ob, name)
+    if before.frame not in drawn or drawn[before.frame].sum() != before.after:
+        raise Problem(f"The drawing on frame {before.frame} has changed since the click: leave with Esc, and undo there")
+    guard.need_open([layer])
     if before.content is None:
         gp.remove_frames(layer, [before.frame])
     else:
-        st.write(drawings[before.frame][0], before.content)
+        st.write(gp.drawings(layer)[before.frame][0], before.content)
         gp.set_keyframe_type(layer, {before.frame: before.kind})
     ob.data.update_tag()
 

@@ -1,4 +1,4 @@
-"""The panels below the steps, in the order of the work: footage, parts, track, snap, strokes, tween, lines, style, document.
+"""The panels below the steps, in the order of the work: footage, parts, track, snap, strokes, tween, lines, paint, style, document.
 
 Only what an artist needs all the time is open at first.
 """
@@ -269,7 +269,6 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
 class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_paint"
     bl_label = "Paint"
-    bl_parent_id = "ROTOTOON_PT_lines"
     bl_options = CLOSED
     page = "artist/lines.html#paint"
 

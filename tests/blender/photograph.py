@@ -256,7 +256,7 @@ def capture(panels: list):
     looked_through_camera()
     yield 2.0
     save("window", screen())
-    yield from panels_photographed(panels, ["footage", "parts", "track", "snap", "lines", "strokes", "document", "style"])
+    yield from panels_photographed(panels, ["footage", "parts", "track", "snap", "lines", "paint", "strokes", "document", "style"])
     bpy.context.object.rototoon.show_confidence = True
     bpy.context.object.data.layers["Snapped"].hide = True
     looked_closely()

@@ -41,7 +41,7 @@ LONGEST = 180
 """Seconds until an operator must have ended."""
 ELSEWHERE: dict[str, str] = {}
 """Operators without a button in the tab, and where they are."""
-LEAVE = {"match_lines": "RET", "match_strokes": "RET"}
+LEAVE = {"match_lines": "RET", "match_strokes": "RET", "paint_bucket": "RET"}
 """Keys that end operators which go on until the artist ends them."""
 QUIET = {"show_confidence"}
 """Operators whose result is seen at once, so that they say nothing."""

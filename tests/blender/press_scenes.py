@@ -11,8 +11,8 @@ from window import in_view, view
 
 _kept: dict[str, str] = {}
 _real: list = []
-"""What makes sessions, matches contours and traces lines in the installed extension."""
-STAND_INS = (stand_in.Session.from_document, stand_in.match_contours, stand_in.Tracer.from_document)
+"""What makes sessions, matches contours, traces lines and paints in the installed extension."""
+STAND_INS = (stand_in.Session.from_document, stand_in.match_contours, stand_in.Tracer.from_document, stand_in.Painter.from_document)
 """What does so on the studio's file."""
 INSTEAD = {"apply_motion": {"style": "plain"}}
 """Properties other than those of the table: the button takes the content from the list, in which the first clip is chosen."""
@@ -22,18 +22,19 @@ def build(addon, folder: Path) -> None:
     """Writes the studio's file."""
     folder.mkdir(parents=True, exist_ok=True)
     sessions = addon("capture.sessions")
-    _real.extend((sessions.make, sessions.matcher, addon("lines.tracing").make))
+    _real.extend((sessions.make, sessions.matcher, addon("lines.tracing").make, addon("paint.filling").make))
     _track_with(addon, *STAND_INS)
     _kept["folder"] = str(folder)
     _kept["studio"] = studio.build(addon, folder)
 
 
-def _track_with(addon, make, matcher, tracer) -> None:
+def _track_with(addon, make, matcher, tracer, painter) -> None:
     """The studio's figure is not in its footage, so a stand-in tracks and traces there. The steps are done with the library."""
     sessions = addon("capture.sessions")
     sessions.clear()
     sessions.make, sessions.matcher = make, matcher
     addon("lines.tracing").make = tracer
+    addon("paint.filling").make = painter
 
 
 def options(name: str) -> dict:

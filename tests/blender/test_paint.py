@@ -1,6 +1,7 @@
 """Paint Bucket, Fill Drawings, Next Doubtful Region and Clear Paint on the small line film, with the real library."""
 
 import json
+from types import SimpleNamespace
 
 import bpy
 import line_shots as ls
@@ -327,6 +328,8 @@ def test_a_click_in_the_view_meets_the_pixel_and_is_taken_back(addon, clicked):
     assert sorted(kinds(addon, clicked, LAYER)) == [1, 3]
     bucket.take_back(clicked, first)
     bucket.take_back(clicked, again)
+    with pytest.raises(addon("blender.errors").Problem, match="The drawing on frame 1 has changed since the click"):
+        bucket.take_back(clicked, again)
     assert kinds(addon, clicked, LAYER) == {1: "KEYFRAME"} and before.equals(read(addon, clicked, 1))
 
 
@@ -346,3 +349,40 @@ def test_a_held_drawing_is_painted_where_it_begins(addon, clicked, tmp_path, pic
     assert kinds(addon, film_on_twos, LAYER) == {1: "KEYFRAME"}
     bpy.ops.rototoon.fill_drawings()
     assert kinds(addon, film_on_twos, LAYER) == {1: "KEYFRAME", 3: "GENERATED"}
+
+
+def test_clicks_are_taken_until_the_artist_leaves(addon, film, monkeypatch):  # noqa: F811
+    module = addon("paint.operators.paint_bucket")
+    own = {name: value for name, value in vars(module.ROTOTOON_OT_paint_bucket).items() if not name.startswith("__")}
+    bucket = type("Bucket", (module.Reporting, module.OnFootage), own | {"report": lambda *_: None})()
+    said_there, spot = [], {}
+    space = SimpleNamespace(status_text_set=said_there.append)
+    cursor = SimpleNamespace(cursor_modal_set=lambda _: None, cursor_modal_restore=lambda: None)
+    context = SimpleNamespace(object=film, scene=bpy.context.scene, workspace=space, window=cursor)
+    monkeypatch.setattr(module, "view_at", lambda *_: spot.get("view"))
+    monkeypatch.setattr(addon("paint.bucket"), "pixel_of", lambda *_: spot["at"])
+    rays = SimpleNamespace(region_2d_to_origin_3d=lambda *_: (0, 0, 0), region_2d_to_vector_3d=lambda *_: (0, 1, 0))
+    monkeypatch.setattr(module, "view3d_utils", rays)
+    bucket._stack, bucket._undone = [], module.Undone()
+
+    def event(kind, at=None, ctrl=False, view=True):
+        spot.update(at=at, view=(SimpleNamespace(x=0, y=0), None) if view else None)
+        return bucket.modal(context, SimpleNamespace(type=kind, value="PRESS", ctrl=ctrl, mouse_x=0, mouse_y=0))
+
+    (paper, _), (body, _), (eye, _), _ = places(1)
+    film.rototoon.fill_colour = SKIN
+    assert event("LEFTMOUSE", body) == {"RUNNING_MODAL"} and said_there[-1].startswith("1 region filled.")
+    assert event("LEFTMOUSE", paper, view=False) == {"PASS_THROUGH"} == event("WHEELUPMOUSE") == event("RIGHT_ARROW")
+    event("LEFTMOUSE", tuple(ls.lines(0)[0][0][0]))
+    assert said_there[-1].startswith("There is a line here")
+    film.rototoon.fill_colour = EYE
+    event("LEFTMOUSE", eye)
+    event("LEFTMOUSE", body, ctrl=True)
+    assert tuple(film.rototoon.fill_colour) == pytest.approx(SKIN, abs=1e-3), "the colour of the body is taken"
+    assert colour_at(addon, film, 1, eye) == pytest.approx(EYE, abs=1e-3)
+    event("Z", ctrl=True)
+    assert colour_at(addon, film, 1, eye) is None and colour_at(addon, film, 1, body) == pytest.approx(SKIN, abs=1e-3)
+    context.object = bpy.data.objects["Camera"]
+    event("LEFTMOUSE", eye)
+    assert said_there[-1].startswith("Make a Grease Pencil object active first")
+    assert event("ESC") == {"FINISHED"} and said(addon).text == "1 region filled" and said_there[-1] is None

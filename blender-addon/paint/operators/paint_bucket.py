@@ -69,27 +69,38 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
             return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
             self._close(context)
-            return self.done(f"{counted(len(self._stack), 'region')} filled") if self._stack else {"CANCELLED"}
+            told = self.done(f"{counted(len(self._stack), 'region')} filled")
+            # Without a click there is nothing to undo.
+            return told if self._stack else {"CANCELLED"}
+        view = view_at(context, event)
+        if view is None:
+            # The colour in the panel may be changed meanwhile.
+            return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE":
-            return self._mouse(context, event)
+            if event.value == "PRESS":
+                self._try(context, lambda: self._clicked(context, event, *view))
+            return {"RUNNING_MODAL"}
         if event.type == "Z" and event.ctrl and event.value == "PRESS":
-            if self._stack:
-                bucket.take_back(context.object, self._stack.pop())
-                self._tell(context)
+            self._try(context, lambda: self._take_back(context))
             return {"RUNNING_MODAL"}
         return {"PASS_THROUGH"} if event.type in NAVIGATION or event.type in FRAMES else {"RUNNING_MODAL"}
 
-    def _mouse(self, context, event):
-        view = view_at(context, event)
-        if view is None:
-            # The colour of the panel may be changed meanwhile.
-            return {"PASS_THROUGH"}
-        if event.value == "PRESS":
-            try:
-                self._clicked(context, event, *view)
-            except (Problem, RototoonError) as problem:
-                context.workspace.status_text_set(f"{problem}.   {HELP}")
-        return {"RUNNING_MODAL"}
+    def _try(self, context, do) -> None:
+        """Does something and tells how many regions are filled now, or why it could not be done."""
+        try:
+            # Another object may be active by now.
+            why = self.lacking(context.object, self.changes)
+            if why:
+                raise Problem(why)
+            do()
+            self._tell(context)
+        except (Problem, RototoonError) as problem:
+            context.workspace.status_text_set(f"{problem}.   {HELP}")
+
+    def _take_back(self, context) -> None:
+        if self._stack:
+            bucket.take_back(context.object, self._stack[-1])
+            self._stack = self._stack[:-1]
 
     def _clicked(self, context, event, region, view) -> None:
         ob, frame = context.object, context.scene.frame_current
@@ -103,7 +114,6 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
                 ob.rototoon.fill_colour = taken
         else:
             self._fill(context, place)
-        self._tell(context)
 
     def _tell(self, context) -> None:
         context.workspace.status_text_set(f"{counted(len(self._stack), 'region')} filled.   {HELP}")
