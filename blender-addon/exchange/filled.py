@@ -27,8 +27,9 @@ def read(project: dict[str, Any]) -> tuple[dict[int, list[Click]], dict[int, lis
     if not (project.get("fills") or project.get("filled")):
         return {}, {}
     try:
-        # The pictures are not read.
-        with Session.from_document(project, ".") as session:
+        # The pictures are not read, and only these fields are looked at.
+        own = {name: project[name] for name in ("rototoon", "footage", "fills", "filled") if name in project}
+        with Session.from_document({**own, "parts": []}, ".") as session:
             fills, filled = session.fills(), session.filled()
     except RototoonError as error:
         raise Problem(str(error)) from error

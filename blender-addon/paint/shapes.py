@@ -16,39 +16,58 @@ SCANS = 24
 
 def joined(outline: np.ndarray, holes: Sequence[np.ndarray]) -> np.ndarray:
     """An outline (N, 2) and its holes as one closed line. The next hole is always the nearest, by a seam that crosses nothing."""
-    line, left = np.asarray(outline, np.float64), [np.asarray(hole, np.float64) for hole in holes if len(hole) > 2]
+    line = np.asarray(outline, np.float64)
+    left = [_Hole(np.asarray(hole, np.float64), line) for hole in holes if len(hole) > 2]
     while left:
-        seams = [_nearest(line, hole) for hole in left]
-        k = int(np.argmin([seam[0] for seam in seams]))
-        edges = _edges(line, *left)
-        i, j = _free_seam(line, left[k], seams[k][1:], edges)
-        hole = np.roll(left.pop(k), -j, axis=0)
-        line = np.concatenate([line[: i + 1], hole, hole[:1], line[i:]])
+        edges = _edges(line, *(hole.points for hole in left))
+        hole = left.pop(int(np.argmin([hole.away.min() for hole in left])))
+        j = hole.seam(edges)
+        i = int(np.flatnonzero((line == hole.to[j]).all(1))[0])
+        points = np.roll(hole.points, -j, axis=0)
+        line = np.concatenate([line[: i + 1], points, points[:1], line[i:]])
+        for other in left:
+            other.meet(points)
     return line
 
 
-def _nearest(line: np.ndarray, hole: np.ndarray) -> tuple[float, int, int]:
-    away = np.linalg.norm(line[:, None] - hole[None], axis=2)
-    i, j = np.unravel_index(int(away.argmin()), away.shape)
-    return float(away[i, j]), int(i), int(j)
+class _Hole:
+    """A hole that is not joined yet, and for each of its points the nearest point of the line."""
+
+    def __init__(self, points: np.ndarray, line: np.ndarray):
+        self.points, self.low, self.high = points, points.min(0), points.max(0)
+        self.away, self.to = np.full(len(points), np.inf), np.zeros((len(points), 2))
+        self.meet(line)
+
+    def meet(self, line: np.ndarray) -> None:
+        """Takes points of the line into account."""
+        apart = np.maximum(np.maximum(self.low - line.max(0), line.min(0) - self.high), 0.0)
+        if (apart**2).sum() >= self.away.max() ** 2:
+            return
+        step = max(PAIRS // len(line), 1)
+        for start in range(0, len(self.points), step):
+            span = slice(start, start + step)
+            found = ((self.points[span, None] - line) ** 2).sum(2)
+            which = found.argmin(1)
+            away = np.sqrt(found.min(1))
+            nearer = away < self.away[span]
+            self.away[span][nearer] = away[nearer]
+            self.to[span][nearer] = line[which[nearer]]
+
+    def seam(self, edges) -> int:
+        """The point from which the shortest seam goes that crosses no edge. Outlines that touch may have none: then the shortest."""
+        order = np.argsort(self.away, kind="stable")
+        fine = (j for j in order[:TRIED] if not _crosses(self.to[j], self.points[j], *edges))
+        return int(next(fine, order[0]))
+
+
+PAIRS = 1 << 20
+"""Pairs of points that are compared together, so that the arrays stay small."""
+TRIED = 60
+"""Most seams that are tried for a hole."""
 
 
 def _edges(*loops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
-
-
-def _free_seam(line, hole, nearest: tuple[int, int], edges) -> tuple[int, int]:
-    """The shortest seam that crosses no edge. If there is none, as between outlines that touch, the nearest points make it."""
-    away = np.linalg.norm(line[:, None] - hole[None], axis=2)
-    for place in np.argsort(away, axis=None, kind="stable")[:TRIED]:
-        i, j = np.unravel_index(int(place), away.shape)
-        if not _crosses(line[i], hole[j], *edges):
-            return int(i), int(j)
-    return nearest
-
-
-TRIED = 60
-"""Most seams that are tried for a hole."""
 
 
 def _crosses(a: np.ndarray, b: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:

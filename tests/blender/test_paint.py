@@ -386,3 +386,22 @@ def test_clicks_are_taken_until_the_artist_leaves(addon, film, monkeypatch):  # 
     event("LEFTMOUSE", eye)
     assert said_there[-1].startswith("Make a Grease Pencil object active first")
     assert event("ESC") == {"FINISHED"} and said(addon).text == "1 region filled" and said_there[-1] is None
+
+
+def test_holes_are_joined_by_seams_and_parted_again(addon):
+    shapes = addon("paint.shapes")
+    turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+    ring = np.stack([np.cos(-turn), np.sin(-turn)], 1)
+    outline = np.array([(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)])
+    holes = [np.array([x, y]) + size * ring for x, y, size in ((60, 50, 30), (100, 50, 8), (150, 30, 12), (150, 70, 12), (100, 62, 3))]
+    line = shapes.joined(outline, holes)
+    assert shapes.area(line) == pytest.approx(shapes.area(outline) + sum(map(shapes.area, holes)), rel=1e-9), "a hole counts less"
+    first, *others = shapes.parted(line)
+    assert np.array_equal(np.sort(line[first], axis=0), np.sort(outline, axis=0))
+    sizes = sorted(abs(shapes.area(line[loop])) for loop in others)
+    assert sizes == pytest.approx(sorted(-shapes.area(hole) for hole in holes))
+    # No seam crosses another line: a place is inside of the one line where it is inside of the shape.
+    places = np.random.default_rng(1).uniform((0, 0), (200, 100), (500, 2))
+    assert np.array_equal(shapes.inside([line], places), shapes.inside([outline, *holes], places))
+    found = shapes.middles([line])
+    assert shapes.inside([outline, *holes], found).all() and shapes.clearance([line], found).max() > 12
