@@ -10,15 +10,16 @@ Frames are scene frames. Pixels are those of the footage: x right, y down, the o
 World points are in scene units. Every function takes an object of the current scene, and needs no active object and no window.
 
 Where an operator would report an error, a function raises `RuntimeError` with the same text, and nothing has changed. `keys` writes
-keys, `reading` reads contours, `work` tracks, `lines` traces and carries strokes. `take_reports` gives what operators said.
+keys, `reading` reads contours, `work` tracks, `lines` traces and carries strokes, `paint` paints. `take_reports` gives what operators said.
 
-May import: `rototoon`, `blender`, `common`, `capture`, `lines`.
+May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`.
 """
 
 from ..common.reports import Report
 from ..common.reports import take as take_reports
 from .keys import set_key
 from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
+from .paint import Painted, Region, fill_drawings, fill_region, regions
 from .reading import End, Part, Track, ends, lost_frames, parts, tracks, wanted_keys, weakest_frame
 from .work import Tracked, track
 
@@ -26,16 +27,21 @@ __all__ = [
     "Drawn",
     "End",
     "Line",
+    "Painted",
     "Part",
+    "Region",
     "Report",
     "Track",
     "Tracked",
     "carry_strokes",
     "doubtful_lines",
     "ends",
+    "fill_drawings",
+    "fill_region",
     "lines",
     "lost_frames",
     "parts",
+    "regions",
     "set_key",
     "take_reports",
     "trace_drawing",

@@ -405,3 +405,24 @@ def test_holes_are_joined_by_seams_and_parted_again(addon):
     assert np.array_equal(shapes.inside([line], places), shapes.inside([outline, *holes], places))
     found = shapes.middles([line])
     assert shapes.inside([outline, *holes], found).all() and shapes.clearance([line], found).max() > 12
+
+
+def test_scripts_paint_and_read_regions(addon, film):  # noqa: F811
+    scripting, shapes = addon("scripting"), addon("paint.shapes")
+    with pytest.raises(RuntimeError, match='has no layer "Paint"'):
+        scripting.regions(film)
+    for place, colour in places(1):
+        assert scripting.fill_region(film, 1, place, colour) == 1
+    for wrong in ((2, 0, 0), (float("nan"), 0, 0)):
+        with pytest.raises(RuntimeError, match="colour: found .*, expected three numbers from 0 to 1"):
+            scripting.fill_region(film, 1, (8, 8), wrong)
+    with pytest.raises(RuntimeError, match="sensitivity: found 0"):
+        scripting.fill_drawings(film, sensitivity=0)
+    done = scripting.fill_drawings(film, (1, 3))
+    assert (done.regions, done.frames, done.doubtful, done.missed, done.unrelated) == (12, (1, 2, 3), {}, (), ())
+    found = scripting.regions(film)
+    assert sorted(found) == [1, 2, 3] and [region.generated for region in found[1]] == [False] * 4
+    for place, colour in places(3):
+        (own,) = [each for each in found[3] if shapes.inside([each.outline, *each.holes], np.array([place]))[0]]
+        assert own.colour == pytest.approx(colour, abs=1e-3) and own.generated and 0.5 < own.confidence < 1
+    assert sorted(region.number for region in found[3]) == [1, 2, 3, 4]

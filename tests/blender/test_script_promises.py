@@ -11,6 +11,8 @@ WRITERS = {
     "set_key": (studio.CONTOURS, lambda s, ob: s.set_key(ob, 5, {"new": shots.square(4)})),
     "track": (studio.CONTOURS, lambda s, ob: s.track(ob)),
     "trace_drawing": (studio.LINES, lambda s, ob: s.trace_drawing(ob)),
+    "fill_region": (studio.PAINT, lambda s, ob: s.fill_region(ob, 1, (90.0, 60.0), (0.1, 0.5, 0.2))),
+    "fill_drawings": (studio.PAINT, lambda s, ob: s.fill_drawings(ob)),
     "carry_strokes": (studio.INK, lambda s, ob: s.carry_strokes(ob, [studio.INK])),
 }
 """Functions that write, and the layer that each writes here."""
@@ -26,6 +28,8 @@ def prepared(addon, ob, name):
     shots.move(addon, ob, 2, 3, (4.0, 2.0), which=[1])
     if name == "trace_drawing":
         bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    if name.startswith("fill"):
+        bpy.ops.rototoon.paint_bucket(place=(20.0, 20.0))
 
 
 @pytest.mark.parametrize("name", WRITERS)

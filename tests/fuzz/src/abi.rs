@@ -6,6 +6,10 @@
 #![allow(unsafe_code, reason = "a C ABI is called with raw pointers; each use says why they are valid")]
 
 use rototoon_capi::callback::RototoonProgress;
+use rototoon_capi::filled::RototoonFilled;
+use rototoon_capi::filled_abi::{
+    rototoon_filled_free, rototoon_filled_read, rototoon_session_fill, rototoon_session_set_fills,
+};
 use rototoon_capi::handles::{
     RototoonCurves, RototoonTrack, rototoon_curves_free, rototoon_curves_read, rototoon_text_free, rototoon_text_read,
     rototoon_track_free, rototoon_track_read,
@@ -212,6 +216,79 @@ impl Session {
             rototoon_curves_free(curves);
             fine
         }
+    }
+}
+
+impl Session {
+    /// `rototoon_session_set_fills`. `places` and `colours` have two and three numbers for each frame.
+    pub fn set_fills(&self, frames: &[i32], places: &[f64], colours: &[f64]) -> bool {
+        assert_eq!((places.len(), colours.len()), (2 * frames.len(), 3 * frames.len()));
+        // SAFETY: a living session, arrays with the lengths that the function asks for (above).
+        done(|error| unsafe {
+            let (frames, count) = (frames.as_ptr(), frames.len());
+            rototoon_session_set_fills(self.0, frames, places.as_ptr(), colours.as_ptr(), count, error)
+        })
+    }
+
+    /// `rototoon_session_fill`, which is cancelled at the report of this number; 0 for never. The regions are read and freed.
+    pub fn fill(&self, options: &str, mut cancel: u32) -> bool {
+        let asked: RototoonProgress = if cancel > 0 { Some(progress) } else { None };
+        let user = (&raw mut cancel).cast();
+        let (mut filled, mut report) = (null_mut(), null_mut());
+        let (data, length) = (options.as_ptr(), options.len());
+        // SAFETY: a living session, a text with its length, a callback that fits `user`, locals.
+        unsafe {
+            let fine =
+                done(|error| rototoon_session_fill(self.0, data, length, asked, user, &mut filled, &mut report, error));
+            assert_eq!((taken(report).is_some(), !filled.is_null()), (fine, fine));
+            if fine {
+                read_regions(filled);
+            }
+            rototoon_filled_free(filled);
+            fine
+        }
+    }
+}
+
+/// Reads all arrays of painted regions.
+///
+/// # Safety
+///
+/// `filled` is a living handle.
+unsafe fn read_regions(filled: *const RototoonFilled) {
+    let mut count = 0;
+    let (mut frames, mut regions, mut tracks, mut doubtful) = (null(), null(), null(), null());
+    let (mut outlines, mut ends) = (null::<i32>(), null::<i32>());
+    let (mut colours, mut confidence, mut points) = (null(), null(), null());
+    // SAFETY: a living handle (this function's contract), locals; arrays are read before their handle is freed.
+    unsafe {
+        assert!(done(|error| rototoon_filled_read(
+            filled,
+            &mut count,
+            &mut frames,
+            &mut regions,
+            &mut tracks,
+            &mut colours,
+            &mut confidence,
+            &mut doubtful,
+            &mut outlines,
+            &mut ends,
+            &mut points,
+            error
+        )));
+        let last =
+            |offsets: *const i32, at: usize| usize::try_from(*offsets.add(at)).expect("offsets are not negative");
+        read(frames, count);
+        read(regions, count + 1);
+        let found = last(regions, count);
+        read(tracks, found);
+        read(colours, 3 * found);
+        read(confidence, found);
+        read(doubtful, found);
+        read(outlines, found + 1);
+        let loops = last(outlines, found);
+        read(ends, loops + 1);
+        read(points, 2 * last(ends, loops));
     }
 }
 

@@ -12,7 +12,7 @@ use rototoon_capi::session_track_abi as results;
 use rototoon_capi::style_abi::{rototoon_capture_clip, rototoon_import_motion};
 use std::sync::OnceLock;
 
-/// Most calls of an input, and most of them that track or snap.
+/// Most calls of an input, and most of them that track, snap or paint.
 const MOST_CALLS: [usize; 2] = [10, 1];
 /// Most frames of a footage. More are as slow as they are many.
 const MOST_FRAMES: i64 = 32;
@@ -88,8 +88,34 @@ fn one_call(session: &Session, u: &mut Unstructured, slow: &mut usize) -> Result
             *slow += 1;
             worked(session, u)?
         }
+        14 => clicked(session, u)?,
+        15 if *slow < MOST_CALLS[1] && u.ratio(1u8, 2)? && short(session) => {
+            *slow += 1;
+            let cancel = if u.ratio(1u8, 8)? { u.int_in_range(1..=8)? } else { 0 };
+            let odd = if u.ratio(1u8, 16)? {
+                format!(", \"confidence\": {}", given::json_number(number(u)?))
+            } else {
+                String::new()
+            };
+            session.fill(&format!("{{\"threads\": 1{odd}}}"), cancel)
+        }
         _ => true,
     })
+}
+
+/// Clicks of a painter.
+fn clicked(session: &Session, u: &mut Unstructured) -> Result<bool> {
+    let places = points(u, 0, 8)?;
+    let mut frames = Vec::new();
+    let mut colours = Vec::new();
+    for _ in &places {
+        frames.push(frame(u)?);
+        for _ in 0..3 {
+            colours.push(if u.ratio(1u8, 64)? { number(u)? } else { f64::from(u.int_in_range(0..=4u8)?) / 4.0 });
+        }
+    }
+    let places: Vec<f64> = places.iter().flat_map(|p| [p.x, p.y]).collect();
+    Ok(session.set_fills(&frames, &places, &colours))
 }
 
 /// Whether tracking is short: few frames of the size that the pictures have.

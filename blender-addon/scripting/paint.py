@@ -1,0 +1,128 @@
+"""Paint as functions: Paint Bucket and Fill Drawings with their results as data, and the regions of the layer with paint in pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from rototoon.types import Progress
+
+from ..blender import colours, guard
+from ..blender import grease_pencil as gp
+from ..blender.errors import Problem
+from ..common import jobs
+from ..common.operators import OnDrawing
+from ..lines import plan as lines_plan
+from ..lines.doubts import of_strokes
+from ..lines.operators.tracing_base import OnFootage
+from ..paint import bucket, filling, sheets
+from ..paint import plan as plans
+from .refusing import need, told
+
+
+@dataclass(frozen=True)
+class Region:
+    """A filled region on one frame."""
+
+    number: int
+    """Its number, the same on all frames; 0 for a shape of the artist that Fill Drawings has not seen yet."""
+    outline: np.ndarray
+    """Footage pixels, float64 (N, 2)."""
+    holes: tuple[np.ndarray, ...]
+    """The outlines of its holes, in the same form."""
+    colour: tuple[float, float, float]
+    """sRGB from 0 to 1."""
+    generated: bool
+    """Whether Fill Drawings painted it, and nobody has changed it since."""
+    confidence: float
+    """The probability, 0 to 1, that the colour is right. It is 1 for shapes of the artist."""
+
+
+@dataclass(frozen=True)
+class Painted:
+    """Result of `fill_drawings`."""
+
+    regions: int
+    """Number of regions on all painted frames together."""
+    frames: tuple[int, ...]
+    """Scene frames that were painted, rising."""
+    doubtful: dict[int, int]
+    """By scene frame the number of regions whose colour is probably wrong."""
+    missed: tuple[int, ...]
+    """Scene frames on which a shape of the artist lies on a line, rising."""
+    unrelated: tuple[int, ...]
+    """Scene frames that no painted drawing resembles, rising. They stay unpainted."""
+
+
+@told
+def fill_region(
+    ob: bpy.types.Object, frame: int, place: Sequence[float], colour: Sequence[float], *, sensitivity: float | None = None
+) -> int:
+    """Fills the region of the picture at a place (footage pixels) with a colour (sRGB, 0 to 1), as Paint Bucket.
+
+    Returns the scene frame of the drawing that was painted: an earlier one, if the frame holds its picture. `sensitivity` is 0.1 to 10;
+    by default it is that of the panel.
+    """
+    need(ob, OnFootage)
+    (x, y), (red, green, blue) = place, colour
+    if not all(0 <= channel <= 1 for channel in (red, green, blue)):
+        raise Problem(f"colour: found {tuple(colour)}, expected three numbers from 0 to 1")
+    jobs.clear_the_way()
+    chosen = ob.rototoon.line_sensitivity if sensitivity is None else sensitivity
+    return bucket.paint(ob, frame, (float(x), float(y)), (float(red), float(green), float(blue)), chosen).frame
+
+
+@told
+def fill_drawings(
+    ob: bpy.types.Object,
+    frames: tuple[int, int] | None = None,
+    *,
+    sensitivity: float | None = None,
+    confidence: float | None = None,
+    progress: Progress | None = None,
+) -> Painted:
+    """Paints the regions of all drawings with the colours of the artist's shapes, as the operator Fill Drawings.
+
+    `frames` are the first and last scene frame; by default all of the footage. `sensitivity` is 0.1 to 10, and regions whose colour has
+    less than `confidence` stay unpainted; by default both are those of the panel. `progress(fraction, step)` is called on this thread; it
+    returns ``False`` to cancel, which raises `RuntimeError` and changes nothing.
+    """
+    need(ob, OnFootage)
+    settings = ob.rototoon
+    jobs.clear_the_way()
+    plan = plans.make(ob, plans.layer_name(ob), *(frames or lines_plan.film(ob)))
+    options = filling.Options(
+        settings.line_sensitivity if sensitivity is None else sensitivity,
+        settings.fill_confidence if confidence is None else confidence,
+    )
+    worker = filling.worker(plan, options)
+    worker.run_here(progress)
+    done = jobs.drained(filling.finishing(ob, plan, worker.result))
+    painted, missed, unrelated = (tuple(sorted(each)) for each in (done.frames, done.missed, done.unrelated))
+    return Painted(done.regions, painted, dict(sorted(done.doubtful.items())), missed, unrelated)
+
+
+@told
+def regions(ob: bpy.types.Object) -> dict[int, list[Region]]:
+    """The filled regions of the layer with paint by scene frame, from back to front. Changes nothing."""
+    need(ob, OnDrawing, guard.NOTHING)
+    name = ob.rototoon.fills_layer
+    if gp.find_layer(ob, name) is None:
+        raise Problem(f'"{ob.name}" has no layer "{name}"')
+    drawn = sheets.read(ob, name)
+    mapper = plans.mapper_of(ob, name, drawn, drawn)
+    return {frame: _regions(ob, drawn[frame], mapper.at(0, frame)) for frame in sorted(drawn)}
+
+
+def _regions(ob: bpy.types.Object, sheet: sheets.Sheet, mapping) -> list[Region]:
+    content, found = sheet.content, []
+    numbers, seen = content.strokes(gp.TRACK), colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1)
+    sure = np.where(sheet.made, of_strokes(content.point.get(gp.CONFIDENCE), content.starts), 1.0)
+    for shape in sheets.shapes_of(ob, content, mapping, range(len(numbers))):
+        first = shape.strokes[0]
+        outline, *holes = sheets.loops_of(shape)
+        colour = tuple(seen[first].tolist())
+        found.append(Region(int(numbers[first]), outline, tuple(holes), colour, bool(sheet.made[first]), float(sure[first])))
+    return found
