@@ -12,7 +12,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 use rototoon_lines::ink::distance;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, VecDeque};
+use std::collections::{BTreeSet, BinaryHeap, VecDeque};
 
 /// Area of the smallest region in pixels at 540 lines.
 const LEAST: f64 = 6.0;
@@ -72,6 +72,7 @@ impl Regions {
 
     /// Splits a region between places that lie in it. Each place gets a region of its own: the first one keeps the number.
     /// A flood begins where the way up from its place ends, so a place in a corner counts as much as one in the middle.
+    /// Places whose ways end at one summit stay together: nothing is between them.
     pub fn split(&mut self, region: usize, places: &[Point]) {
         let (width, height) = (self.inside.width(), self.inside.height());
         let own = self.inside.map(|label| label as usize == region);
@@ -81,13 +82,17 @@ impl Regions {
         let key = |at: usize, level: u32| ((depth.data()[at] * 16.0) as u32).min(level);
         let mut front: BinaryHeap<(u32, Reverse<usize>, usize, u32)> = BinaryHeap::new();
         let mut came = 0;
-        for (k, place) in places.iter().enumerate() {
+        let mut summits = BTreeSet::new();
+        for place in places {
             let Some(at) = nearest_of(&own, *place).map(|at| summit(&depth, at)) else { continue };
-            let number = if k == 0 { region } else { self.count + k } as u32;
+            if !summits.insert(at) {
+                continue;
+            }
+            self.count += usize::from(came > 0);
+            let number = if came == 0 { region } else { self.count } as u32;
             front.push((key(at, u32::MAX), Reverse(came), at, number));
             came += 1;
         }
-        self.count += places.len().saturating_sub(1);
         while let Some((level, _, at, number)) = front.pop() {
             if flooded.data()[at] > 0 {
                 continue;
@@ -236,6 +241,18 @@ mod tests {
         assert_eq!(column(4), [1; 10]);
         assert_eq!(column(9), [2; 10]);
         assert!(column(6).iter().enumerate().all(|(y, &label)| (label == 0) == wall(y)));
+    }
+
+    #[test]
+    fn places_at_one_summit_stay_together() {
+        let wall = |y: usize| !(4..=5).contains(&y);
+        let mut regions = Regions::new(&Raster::from_fn(15, 10, |x, y| x == 6 && wall(y)));
+        let places = [(1.5, 0.5), (0.5, 0.5), (1.5, 0.5), (9.5, 4.5), (9.5, 5.5)];
+        regions.split(1, &places.map(|(x, y)| Point::new(x, y)));
+        let found: BTreeSet<u32> = regions.inside.data().iter().copied().filter(|&label| label > 0).collect();
+        let all: BTreeSet<u32> = (1..=regions.count as u32).collect();
+        assert_eq!(found, all, "no region is without a pixel");
+        assert!(regions.count < places.len(), "{}", regions.count);
     }
 
     #[test]
