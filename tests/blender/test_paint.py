@@ -1,12 +1,14 @@
 """Paint Bucket, Fill Drawings, Next Doubtful Region and Clear Paint on the small line film, with the real library."""
 
 import json
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
 import line_shots as ls
 import numpy as np
 import pytest
+import stand_in
 from line_stage import film, pictures  # noqa: F401 - fixtures
 from line_stage import attribute, handle_of, kinds, rendered, said
 
@@ -426,3 +428,36 @@ def test_scripts_paint_and_read_regions(addon, film):  # noqa: F811
         (own,) = [each for each in found[3] if shapes.inside([each.outline, *each.holes], np.array([place]))[0]]
         assert own.colour == pytest.approx(colour, abs=1e-3) and own.generated and 0.5 < own.confidence < 1
     assert sorted(region.number for region in found[3]) == [1, 2, 3, 4]
+
+
+def test_other_drawings_stay_unpainted(addon, painted, monkeypatch):
+    class Cut(stand_in.Painter):
+        """No picture from the fifth on shows the same."""
+
+        def fill(self, *arguments, **options):
+            found = super().fill(*arguments, **options)
+            return replace(found, frames=found.frames[:4], unrelated=[5, 6])
+
+    monkeypatch.setattr(addon("paint.filling"), "make", Cut.from_document)
+    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+    assert said(addon).text == "16 regions on 6 frames; not painted, since no drawing of yours shows the same: frames 5 and 6"
+    assert kinds(addon, painted, LAYER) == {1: "KEYFRAME", **dict.fromkeys(range(2, 7), "GENERATED")}
+    assert not len(read(addon, painted, 5).sizes), "the drawing before is not shown there"
+
+
+def test_a_shape_on_a_line_is_told(addon, clicked):
+    gp = addon("blender.grease_pencil")
+    mapping = addon("blender.placement").Mapper(clicked, [1], {}, [LAYER]).at(0, 1)
+    # A sliver along the arm, far from all regions but the paper: all of it is ink.
+    (start, *_, end) = ls.lines(0)[4][0]
+    middle, side = (start + end) / 2, (end - start)[::-1] * (1, -1) / np.linalg.norm(end - start)
+    sliver = np.stack([middle - 0.3 * side, middle + 0.3 * side, middle + 0.02 * (end - start)])
+    rows = gp.Rows(np.array([3], np.int32))
+    rows.values = {"position": mapping.to_layer(sliver).astype(np.float32), "cyclic": np.array([True])}
+    rows.values["material_index"] = np.array([addon("blender.fill_materials").material(clicked, np.array(GREEN))], np.int32)
+    if gp.FILL_BY_ID:
+        rows.values["fill_id"] = np.array([77], np.int32)
+    gp.append(handle_of(addon, clicked, LAYER, 1), rows)
+    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+    assert "a shape of yours lies on a line: frame 1" in said(addon).text
+    assert len(read(addon, clicked, 1).sizes) == 5

@@ -38,10 +38,14 @@ class ROTOTOON_OT_fill_drawings(Framed, Long, OnFootage, bpy.types.Operator):
 
     def finish(self, _context, work):
         done = yield from filling.finishing(self._ob, self._plan, work.result)
-        self.warn(f"on {listed(sorted(done.missed))} a shape of yours lies on a line" if done.missed else "")
-        self.warn(f"not painted, since no drawing of yours shows the same: {listed(sorted(done.unrelated))}" if done.unrelated else "")
+        self.warn(f"a shape of yours lies on a line: {_named(done.missed)}" if done.missed else "")
+        self.warn(f"not painted, since no drawing of yours shows the same: {_named(done.unrelated)}" if done.unrelated else "")
         self.warn(_doubts(done))
         return f"{counted(done.regions, 'region')} on {counted(len(done.frames), 'frame')}"
+
+
+def _named(frames: set[int]) -> str:
+    return f"{'frame' if len(frames) == 1 else 'frames'} {listed(sorted(frames))}"
 
 
 def _doubts(done: filling.Done) -> str:
