@@ -279,11 +279,12 @@ class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop(settings, "fill_colour")
         column.prop(settings, "fills_layer", text="Layer")
-        column.prop(settings, "fill_confidence")
+        # Beside a label of this length there is no room for it.
+        layout.prop(settings, "fill_confidence")
         layout.operator("rototoon.paint_bucket", icon="BRUSH_DATA")
         row = layout.row(align=True)
         row.scale_y = 1.5
-        row.operator("rototoon.fill_drawings", icon="SNAP_FACE").frames = "ALL"
+        row.operator("rototoon.fill_drawings", icon="COLOR").frames = "ALL"
         side = row.row(align=True)
         side.ui_units_x = 4
         side.operator("rototoon.fill_drawings", text="This Frame").frames = "CURRENT"
