@@ -24,6 +24,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
 import layouts
 import numpy as np
+import press_paint
 import press_scenes
 import studio
 import tab
@@ -292,6 +293,20 @@ def every_help(session: Session, every: list):
         yield from press_operator(session, panel, HEADER, 0, "help")
 
 
+def every_click(session: Session, every: list):
+    """Paints with the mouse."""
+    tab.only(every, None)
+    panel = next(panel for panel in every if tab.title(panel) == "paint")
+    start = LOG.stat().st_size
+
+    def note(step: str, said: str, fault: str) -> None:
+        nonlocal start
+        session.note(panel, Button("mouse", step), said, failed(said_since(start)) or fault)
+        start = LOG.stat().st_size
+
+    yield from press_paint.painted(addon, OUT.parent / "film", note)
+
+
 # -- properties ------------------------------------------------------------------------------------------------------
 
 
@@ -395,7 +410,7 @@ def session():
         wear(*VARIANTS[variant])
         found = Session(OUT / variant)
         found.folder.mkdir(parents=True, exist_ok=True)
-        for work in (every_panel, every_property, every_operator, every_step, every_help):
+        for work in (every_panel, every_property, every_operator, every_step, every_click, every_help):
             if not ONLY or work.__name__ in ONLY:
                 started = time.monotonic()
                 yield from work(found, every)

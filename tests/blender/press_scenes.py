@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import bpy
+import line_shots
 import shots
 import stand_in
 import studio
@@ -35,6 +36,21 @@ def _track_with(addon, make, matcher, tracer, painter) -> None:
     sessions.make, sessions.matcher = make, matcher
     addon("lines.tracing").make = tracer
     addon("paint.filling").make = painter
+
+
+def film(addon, folder: Path):
+    """Opens the studio's file with the line film as footage of a new drawing, seen through the camera. It is painted with the library."""
+    ready(addon, "setup")
+    _track_with(addon, *_real)
+    with in_view():
+        ob = line_shots.set_up(line_shots.draw_sequence(folder))
+        view()[0].spaces.active.region_3d.view_perspective = "CAMERA"
+    return ob
+
+
+def stand_in_again(addon) -> None:
+    """After work with the library."""
+    _track_with(addon, *STAND_INS)
 
 
 def options(name: str) -> dict:

@@ -48,6 +48,8 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
         self._stack = [*self._stack, bucket.paint(ob, context.scene.frame_current, place, colour, sensitivity)]
 
     _stack: list[bucket.Before] = []
+    _pushed: list[bucket.Before] = []
+    """The clicks that Blender's undo knows."""
     _undone = None
 
     def invoke(self, context, _event):
@@ -55,7 +57,7 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         jobs.clear_the_way()
-        self._stack, self._undone = [], Undone()
+        self._stack, self._pushed, self._undone = [], [], Undone()
         context.window.cursor_modal_set("PAINT_BRUSH")
         context.window_manager.modal_handler_add(self)
         self._tell(context)
@@ -70,18 +72,20 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
         if event.type in {"ESC", "RIGHTMOUSE", "RET", "NUMPAD_ENTER"} and event.value == "PRESS":
             self._close(context)
             told = self.done(f"{counted(len(self._stack), 'region')} filled")
-            # Without a click there is nothing to undo.
-            return told if self._stack else {"CANCELLED"}
+            # Without a click that Blender does not know of there is nothing to undo.
+            return told if self._unknown() else {"CANCELLED"}
+        if event.type == "Z" and event.ctrl and not event.shift:
+            if event.value == "PRESS":
+                self._try(context, lambda: self._take_back(context))
+            return {"RUNNING_MODAL"}
         view = view_at(context, event)
         if view is None:
-            # The colour in the panel may be changed meanwhile.
+            # The colour in the panel may be changed meanwhile. Blender's Undo is in reach, too, and must not take more than the clicks.
+            self._push()
             return {"PASS_THROUGH"}
         if event.type == "LEFTMOUSE":
             if event.value == "PRESS":
                 self._try(context, lambda: self._clicked(context, event, *view))
-            return {"RUNNING_MODAL"}
-        if event.type == "Z" and event.ctrl and event.value == "PRESS":
-            self._try(context, lambda: self._take_back(context))
             return {"RUNNING_MODAL"}
         return {"PASS_THROUGH"} if event.type in NAVIGATION or event.type in FRAMES else {"RUNNING_MODAL"}
 
@@ -96,6 +100,16 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
             self._tell(context)
         except (Problem, RototoonError) as problem:
             context.workspace.status_text_set(f"{problem}.   {HELP}")
+
+    def _unknown(self) -> bool:
+        """Whether there are clicks, or clicks taken back, that Blender's undo does not know."""
+        return len(self._stack) != len(self._pushed) or any(a is not b for a, b in zip(self._stack, self._pushed))
+
+    def _push(self) -> None:
+        """Makes an undo step of the clicks."""
+        if self._unknown():
+            bpy.ops.ed.undo_push(message=self.bl_label)
+            self._pushed = self._stack
 
     def _take_back(self, context) -> None:
         if self._stack:
