@@ -105,13 +105,18 @@ def _manifest(place: Path, names: Sequence[str], shots: Sequence[Mapping[str, An
         entry: dict[str, Any] = {"name": name, "project": f"{SHOTS}/{name}.json"}
         if shot["blend"]:
             entry["blend"] = _relative(place, shot["blend"])
-        if shot["preset"] != _DEFAULT:
-            entry["steps"] = _steps(choices, shot["preset"])
+        steps = _steps(choices, shot["preset"], bool(shot["document"]["parts"]))
+        if "paint" in shot:
+            steps.append({"do": "fill", **shot["paint"]})
+        if steps != _steps(choices, _DEFAULT):
+            entry["steps"] = steps
         entries.append(entry)
     return {"rototoon_batch": VERSION, "steps": _steps(choices, _DEFAULT), "shots": entries}
 
 
-def _steps(choices: Choices, preset: str) -> list[dict[str, Any]]:
+def _steps(choices: Choices, preset: str, contours: bool = True) -> list[dict[str, Any]]:
+    if not contours:
+        return [{"do": "check"}]
     track = {"do": "track"} if preset == _DEFAULT else {"do": "track", "preset": preset}
     steps: list[dict[str, Any]] = [{"do": "check"}, track]
     if choices.snap:

@@ -31,7 +31,7 @@ from . import batch
 RECORD = "batch.json"
 SAME = 0.01
 """Pixels. Points that differ by less are the same: an object's points have single precision."""
-_DOCUMENTS = {"track", "snap", "trace", "tween"}
+_DOCUMENTS = {"track", "snap", "trace", "fill", "tween"}
 """The steps that write a document."""
 
 
@@ -93,7 +93,7 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     guard.need_some(tracking.contour_layers(ob), hidden=True)
     reading = document.read(ob)
     yield 0.0
-    _need_same_footage(ob, reading.document["footage"], result["footage"])
+    need_same_footage(ob, reading.document["footage"], result["footage"])
     taken = Taken()
     sent = {entry["name"]: entry for entry in result.get("parts", [])}
     now = {entry["name"]: entry for entry in reading.document["parts"]}
@@ -127,7 +127,8 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     return taken
 
 
-def _need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any]) -> None:
+def need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any]) -> None:
+    """Raises a `Problem` if the result is of pictures of another size."""
     for name in ("width", "height"):
         if now[name] != sent[name]:
             raise Problem(f'"{ob.name}" has other footage than what was sent ({name} {now[name]}, not {sent[name]}): send it again')

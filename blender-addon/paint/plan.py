@@ -53,12 +53,17 @@ class Plan:
 
 def layer_name(ob) -> str:
     """The name of the layer with paint. Raises a `Problem` if the layer may not be written, or is for something else."""
-    settings = ob.rototoon
-    name = settings.fills_layer
-    if not name or name in (settings.lines_layer, settings.snapped_layer, settings.contours_layer):
+    name = ob.rototoon.fills_layer
+    if name in taken_names(ob):
         raise Problem(f'The layer "{name}" is for lines or contours: give paint a layer of its own, in the panel Paint')
     guard.need_open([gp.find_layer(ob, name)])
     return name
+
+
+def taken_names(ob) -> tuple[str, ...]:
+    """Names that the layer with paint can't have."""
+    settings = ob.rototoon
+    return "", settings.lines_layer, settings.snapped_layer, settings.contours_layer
 
 
 def make(ob, name: str, first: int, last: int) -> Plan:

@@ -19,8 +19,8 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
     bl_idname = "rototoon.send_to_farm"
     bl_label = "Send to Farm"
     bl_description = (
-        "Write the contours of many shots as documents, with a manifest for the command rototoon batch and job files for render farms. "
-        "Collect Results takes the finished tracks in"
+        "Write the contours and the paint of many shots as documents, with a manifest for the command rototoon batch and job files for render farms. "
+        "Collect Results takes the finished tracks and painted regions in"
     )
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
@@ -32,8 +32,8 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
         name="Shots",
         description="What is sent",
         items=(
-            ("SCENE", "Scene", "Every Grease Pencil object of the scene that has footage and contours"),
-            ("SELECTED", "Selected Objects", "The selected Grease Pencil objects that have footage and contours"),
+            ("SCENE", "Scene", "Every Grease Pencil object of the scene that has footage, and contours or shapes of paint"),
+            ("SELECTED", "Selected Objects", "The selected Grease Pencil objects that have footage, and contours or shapes of paint"),
             ("FOLDER", "Files of a Folder", "The scene of every Blender file of a folder, as the files were saved"),
         ),
     )
