@@ -336,14 +336,16 @@ def press_property(session: Session, panel, index: int, box):
         return
     yield from window.moved(*press_scenes.aside())
     before, start, old = look(), LOG.stat().st_size, value_of(button)
-    kind = button.data.bl_rna.properties[button.name].type if button.kind.startswith("prop") else ""
-    menu = kind in ("ENUM", "POINTER") or button.kind == "prop_search"
+    kind = kind_of(button)
+    menu = kind in ("ENUM", "POINTER", "COLOR") or button.kind in ("prop_search", "menu")
     x = box[0] + (10 if kind == "BOOLEAN" else round(0.75 * (box[1] - box[0])))
     yield from window.clicked(x, (box[2] + box[3]) / 2, **({"ctrl": True} if button.row and kind == "STRING" else {}))
     keys = {"STRING": "x", "INT": "7", "FLOAT": "7"}
     if not menu and kind in keys:
         yield from window.typed(keys[kind], "RET")
     yield 0.2
+    if menu:
+        yield from opened(before)
     after, new = look(), value_of(BODY.buttons[index] if index < len(BODY.buttons) else button)
     fault = failed(said_since(start))
     if not fault and new == old and (not menu or differing(before, after) < MENU):
@@ -354,6 +356,22 @@ def press_property(session: Session, panel, index: int, box):
         setattr(button.data, button.name, old)
         yield 0.2
         window.redrawn()
+
+
+def kind_of(button: Button) -> str:
+    """The type of a property; `COLOR` for a colour, whose button opens a picker. Empty for buttons without one."""
+    if not button.kind.startswith("prop"):
+        return ""
+    found = button.data.bl_rna.properties[button.name]
+    return "COLOR" if found.subtype.startswith("COLOR") else found.type
+
+
+def opened(before: np.ndarray):
+    """Waits for a menu. On a machine with other work it may take a while."""
+    for _ in range(20):
+        if differing(before, look()) >= MENU:
+            return
+        yield 0.2
 
 
 def value_of(button: Button):
