@@ -44,6 +44,8 @@ ELSEWHERE: dict[str, str] = {}
 """Operators without a button in the tab, and where they are."""
 LEAVE = {"match_lines": "RET", "match_strokes": "RET", "paint_bucket": "RET"}
 """Keys that end operators which go on until the artist ends them."""
+ENTRY = {"choose_body": 2}
+"""Entries of menus that are chosen, counted from the last: after that of Choose Body a file is asked for."""
 QUIET = {"show_confidence"}
 """Operators whose result is seen at once, so that they say nothing."""
 DIALOGS = {"save_clip", "save_clip_from_armature", "depth_mark", "reshape_drawing", "reshape_picture", "apply_motion", "drive_bones"}
@@ -225,9 +227,9 @@ def press_operator(session: Session, panel, notes, index: int, name: str):
 
 
 def answered(name: str, button: Button, before: np.ndarray):
-    """Answers what a button asks: which entry of its menu (the last), which file, whether to go on."""
+    """Answers what a button asks: which entry of its menu (the last, if `ENTRY` has no other), which file, whether to go on."""
     if button.kind == "operator_menu_enum":
-        yield from window.typed("UP_ARROW", "RET")
+        yield from window.typed(*["UP_ARROW"] * ENTRY.get(name, 1), "RET")
         yield 0.3
     if name in DIALOGS:
         yield from confirmed(before)
