@@ -74,9 +74,11 @@ def ready(addon, name: str) -> None:
         if name == "make_part":
             _select(addon, ob, int(call.options["numbers"]))
     last = bpy.context.window_manager.operator_properties_last(f"rototoon.{name}")
-    for key, value in options(name).items():
-        if key not in ("filepath", "directory") and last is not None:
-            setattr(last, key, value)
+    # The entries of some menus are those of the active object.
+    with in_view():
+        for key, value in options(name).items():
+            if key not in ("filepath", "directory") and last is not None:
+                setattr(last, key, value)
 
 
 def _second_drawing(addon, ob) -> None:
