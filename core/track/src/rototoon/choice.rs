@@ -3,6 +3,9 @@
 //! Members without free drawings have nothing to choose. Their paths, leads and margins are empty. Bonds are found before the
 //! first choice of a stretch and stay the same for every later one.
 
+use super::joint::figure::Figure;
+use super::joint::figure::canvas::Canvas;
+use super::joint::figure::claims::Claims;
 use super::joint::lead::{Lead, leads};
 use super::joint::margin::LARGEST;
 use super::joint::shadow::Memory;
@@ -11,6 +14,7 @@ use super::mechanisms::{Mechanism, Mechanisms};
 use super::pooled::Pooled;
 use crate::contract::tasks::Task;
 use rototoon_base::scene::Scene;
+use std::sync::Arc;
 
 /// The hypothesis that each member of a stretch follows on each of its drawings.
 pub(super) type Paths = Vec<Vec<usize>>;
@@ -56,8 +60,8 @@ impl<'a> Choice<'a> {
         self.members.iter().map(|member| member.path.clone()).collect()
     }
 
-    /// What holds the contenders together.
-    pub fn bonds(&self) -> Bonds {
+    /// What holds the contenders together. `canvas` is the figure that they explain.
+    pub fn bonds(&self, canvas: Option<Arc<Canvas>>) -> Bonds {
         let start = self.of_contenders(&self.start());
         let corrected = |c: usize, d: usize| self.members[self.free[c]].corrected(d);
         let companions = || companion::find(&self.contenders, &start, &corrected);
@@ -65,6 +69,7 @@ impl<'a> Choice<'a> {
         Bonds {
             ties: if has(Mechanism::Joints) { tie::find(&self.contenders) } else { Vec::new() },
             companions: if has(Mechanism::Companions) { companions() } else { Vec::new() },
+            canvas,
         }
     }
 
@@ -83,6 +88,14 @@ impl<'a> Choice<'a> {
             return vec![Vec::new(); self.members.len()];
         }
         self.of_members(leads(&self.contenders, bonds, &self.of_contenders(paths)))
+    }
+
+    /// Which of the figure's blocks each member covers on these paths. `None` without a figure.
+    pub fn claims(&self, bonds: &Bonds, paths: &Paths, memory: &mut Memory) -> Option<Claims> {
+        let canvas = bonds.canvas.as_ref().filter(|_| self.mechanisms.has(Mechanism::JointChoice))?;
+        let names: Vec<&str> = self.free.iter().map(|&m| &*self.members[m].job.name).collect();
+        let figure = Figure::new(canvas, &self.contenders, memory);
+        Some(figure.claims(&self.contenders, &names, &self.of_contenders(paths)))
     }
 
     /// The margin of each member on each of its drawings. Empty for members that are not `chosen`.

@@ -160,11 +160,11 @@ impl Rototoon {
         let start = others.chain(cast.members[first..].iter().map(|pooled| pooled.path.clone())).collect();
         let (members, order) = cast.listed();
         let choice = Choice::new((film.fine(), &cast.tasks, &order), &members, self.mechanisms);
-        let bonds = choice.bonds();
+        let bonds = choice.bonds(None);
         let paths = choice.paths(&bonds, (start, &cast.free), &mut self.shadows);
         let leads = choice.leads(&bonds, &paths);
         let sources = cast.members[first..].to_vec();
-        let mended = self.mend_all(&names, &sources, (&paths[first..], &leads[first..]), frames, shared)?;
+        let mended = self.mend_all(&names, &sources, (&paths[first..], &leads[first..], None), frames, shared)?;
         cast.members.splice(first.., mended.iter().cloned());
         let (members, order) = cast.listed();
         let choice = Choice::new((film.fine(), &cast.tasks, &order), &members, self.mechanisms);

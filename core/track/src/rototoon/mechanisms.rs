@@ -43,13 +43,17 @@ pub enum Mechanism {
     Steadying,
     /// A key that a part has on its own corrects its motion, and does not end its span.
     CorrectiveKeys,
+    /// What the picture shows in colours that only parts have must be explained by parts.
+    Figure,
+    /// Limbs are tried folded at a joint, longer and shorter, where something is unexplained.
+    Folds,
     /// Parts without corrections keep their tracks, unless corrections of other parts make them clearly surer.
     Untouched,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 18] = [
+    pub const ALL: [(Self, &str); 20] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -67,6 +71,8 @@ impl Mechanism {
         (Self::Companions, "companions"),
         (Self::Steadying, "steadying"),
         (Self::CorrectiveKeys, "corrective-keys"),
+        (Self::Figure, "figure"),
+        (Self::Folds, "folds"),
         (Self::Untouched, "untouched"),
     ];
 

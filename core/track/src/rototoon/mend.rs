@@ -4,91 +4,213 @@
 //! - Where a part is in doubt but a part that it is joined to is not, the place of the joint is known. So the part is
 //!   tried in all directions about the joint. That finds limbs that swung too far or bent too much for the chains, also
 //!   in places that the search over the complete picture ranks too low.
+//! - Limbs are also tried folded, longer and shorter ([`fold`](super::fold)).
 //! - Where a part is not where the body that it goes with takes it, the body's motion is tried.
 
+use super::fold::{JOINTS, bases, folds, ranked};
 use super::joint::companion::Motions;
+use super::joint::figure::claims::{Claims, Unclaimed};
 use super::joint::lead::Lead;
+use super::lattice::limb::Joint;
 use super::lattice::mesh::Binding;
 use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
 use super::pooled::Pooled;
-use super::propagate::{Pose, mean_distance};
+use super::propagate::{Model, Pose, mean_distance};
 use super::stage::Stage;
 use crate::contract::error::TrackError;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
-use rototoon_base::geometry::Point;
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::FrameNumber;
+use std::sync::Arc;
 
 /// Step of the rotations tried about a joint, in degrees.
 const TURN_STEP: usize = 15;
 /// Hypotheses kept per model and joint.
 const KEPT: usize = 3;
 /// Two starts nearer than this mean distance of their nodes count as one, in working pixels.
-const SAME_PLACE: f64 = 6.0;
+pub(super) const SAME_PLACE: f64 = 6.0;
+/// Angles in degrees at which a limb is folded that is tried about a joint, to either side.
+const FOLDS: [f64; 3] = [30.0, 60.0, 90.0];
 
-/// The pools of `source` with the hypotheses from its chosen path and from the leads of surer parts.
-pub(super) fn mend(stage: &Stage, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pools, TrackError> {
-    let pools = &source.pools;
-    let last = pools.len() - 1;
-    let mut extended = Pools::clone(pools);
-    let (swept, _) = swept(stage, pools, path, true, &source.carried)?;
-    for hypotheses in [swept, led(stage, pools, last, leads)?] {
-        for (pool, more) in extended.iter_mut().zip(hypotheses) {
-            for new in more {
-                if is_new(pool, &new) {
-                    pool.push(new);
-                }
-            }
-        }
-    }
-    Ok(extended)
+/// What the hypotheses depend on that a joint choice adds: the paths, what surer parts say, and by drawing what the other parts
+/// leave of the figure near the part. None where nothing is looked for by it.
+#[derive(Clone, PartialEq)]
+pub(super) struct Guide {
+    path: Vec<usize>,
+    leads: Vec<Lead>,
+    unclaimed: Vec<Option<Unclaimed>>,
 }
 
-/// New hypotheses about the joints with surer parts, and where bodies carry the part.
-fn led(stage: &Stage, pools: &Pools, last: usize, leads: &[Lead]) -> Result<Pools, TrackError> {
-    (0..last + 1)
+/// Pools with the hypotheses that a joint choice adds.
+#[derive(Clone)]
+pub(super) struct Extended {
+    pub pools: Arc<Pools>,
+    /// By drawing: the number of hypotheses with those from neighbours, but without those that were looked for.
+    swept: Vec<usize>,
+}
+
+impl Guide {
+    /// The guide for a part with these pools.
+    pub fn new(source: &Pooled, path: &[usize], leads: &[Lead], claims: Option<&Claims>) -> Self {
+        let last = source.pools.len().saturating_sub(1);
+        let near = |d: usize| {
+            let claims = claims.filter(|_| d != 0 && d != last && !source.corrected(d))?;
+            let models = source.models.as_ref().filter(|models| models.iter().any(|model| model.limb.is_some()))?;
+            let (low, high) = polygon::bounds(&models[0].texture.mesh.rest)?;
+            let mut places: Vec<Point> =
+                bases(&source.pools[d], path[d]).iter().flat_map(|h| h.points.clone()).collect();
+            places.extend(leads.iter().filter_map(|lead| lead.place(d)));
+            let reach = Point::splat((high - low).length());
+            let (low, high) = polygon::bounds(&places)?;
+            let frame = source.job.span.first + source.drawings[d].first as FrameNumber;
+            claims.unclaimed(&source.job.name, frame, (low - reach, high + reach))
+        };
+        Self { path: path.to_vec(), leads: leads.to_vec(), unclaimed: (0..source.pools.len()).map(near).collect() }
+    }
+
+    /// The chosen hypothesis of each drawing.
+    pub fn path(&self) -> &[usize] {
+        &self.path
+    }
+
+    /// Whether all but the unclaimed figure is the same as in another guide.
+    pub fn differs_in_figure_only(&self, other: &Self) -> bool {
+        self.path == other.path && self.leads == other.leads
+    }
+}
+
+impl Extended {
+    /// The pools of a part without free drawings.
+    pub fn unchanged(pools: &Arc<Pools>) -> Self {
+        Self { pools: pools.clone(), swept: pools.iter().map(Vec::len).collect() }
+    }
+}
+
+/// The pools of `source` with the hypotheses by a guide. `known` are the same by another guide that differs in the unclaimed
+/// figure only.
+pub(super) fn mend(
+    stage: &Stage,
+    source: &Pooled,
+    guide: &Guide,
+    known: Option<(&Guide, &Extended)>,
+) -> Result<Extended, TrackError> {
+    let (mut pools, swept): (Pools, Vec<usize>) = match known {
+        Some((_, known)) => {
+            let first = known.pools.iter().zip(&known.swept).map(|(pool, &count)| pool[..count].to_vec());
+            (first.collect(), known.swept.clone())
+        }
+        None => carried_on(stage, source, &guide.path)?,
+    };
+    let found: Vec<Vec<Hypothesis>> = (0..pools.len())
         .into_par_iter()
         .with_max_len(1)
-        .map(|d| {
-            let mut found = Vec::new();
-            for lead in leads.iter().filter(|_| d != 0 && d != last && !stage.corrected(d)) {
-                stage.kit.progress.report("Tracking", 0.85)?;
-                for model in 0..2 {
-                    let new = match lead {
-                        Lead::Hinge { bindings, places } => {
-                            places[d].map(|place| about(stage, d, model, &bindings[model], place))
-                        }
-                        Lead::Body(motions) => motions[d].map(|motions| vec![carried(stage, d, model, &motions)]),
-                    };
-                    found.extend(new.into_iter().flatten().filter(|h| is_new(&pools[d], h)));
-                }
+        .map(|d| match known {
+            Some((before, known)) if before.unclaimed[d] == guide.unclaimed[d] => {
+                Ok(known.pools[d][known.swept[d]..].to_vec())
             }
-            Ok(found)
+            _ => looked_for(stage, &source.pools, guide, d),
         })
-        .collect()
+        .collect::<Result<_, TrackError>>()?;
+    pools.iter_mut().zip(found).for_each(|(pool, more)| add(pool, more));
+    // What is the same stays the same piece of memory, by which others know it.
+    let same = known.filter(|(_, known)| *known.pools == pools).map(|(_, known)| known.pools.clone());
+    Ok(Extended { pools: same.unwrap_or_else(|| Arc::new(pools)), swept })
 }
 
-/// The best poses of a model rotated about its joint, aligned. `place` is the place of the joint in working pixels.
-fn about(stage: &Stage, d: usize, model: usize, joint: &Binding, place: Point) -> Vec<Hypothesis> {
-    let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
-    let mut starts: Vec<Pose> = Vec::new();
-    for shape in [&own.texture.mesh.rest, &own.bent] {
-        let pivot = joint.at(shape);
-        for degrees in (0..360).step_by(TURN_STEP) {
-            let turn = Point::from_angle((degrees as f64).to_radians());
-            let nodes = shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect();
-            starts.push(own.ranked(&scenery, nodes));
+/// The pools with the chosen poses carried to their neighbours, and their numbers of hypotheses.
+fn carried_on(stage: &Stage, source: &Pooled, path: &[usize]) -> Result<(Pools, Vec<usize>), TrackError> {
+    let mut pools = Pools::clone(&source.pools);
+    let (swept, _) = swept(stage, &source.pools, path, true, &source.carried)?;
+    pools.iter_mut().zip(swept).for_each(|(pool, more)| add(pool, more));
+    let counts = pools.iter().map(Vec::len).collect();
+    Ok((pools, counts))
+}
+
+/// Adds the hypotheses that are new.
+fn add(pool: &mut Vec<Hypothesis>, more: Vec<Hypothesis>) {
+    for new in more {
+        if is_new(pool, &new) {
+            pool.push(new);
         }
     }
+}
+
+/// New hypotheses on a drawing: about the joints with surer parts, where bodies carry the part, and folds.
+fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<Vec<Hypothesis>, TrackError> {
+    if d == 0 || d + 1 == pools.len() || stage.corrected(d) {
+        return Ok(Vec::new());
+    }
+    let unclaimed = guide.unclaimed[d].as_ref();
+    let mut found = Vec::new();
+    for lead in &guide.leads {
+        stage.kit.progress.report("Tracking", 0.85)?;
+        for model in 0..2 {
+            let new = match lead {
+                Lead::Hinge { bindings, places } => {
+                    places[d].map(|place| about(stage, d, model, (&bindings[model], place), unclaimed))
+                }
+                Lead::Body(motions) => motions[d].map(|motions| vec![carried(stage, d, model, &motions)]),
+            };
+            found.extend(new.into_iter().flatten());
+        }
+    }
+    if let Some(unclaimed) = unclaimed {
+        stage.kit.progress.report("Tracking", 0.85)?;
+        found.extend(folds(stage, d, &bases(&pools[d], guide.path[d]), unclaimed));
+    }
+    found.retain(|h| is_new(&pools[d], h));
+    Ok(found)
+}
+
+/// The best poses of a model rotated about its joint, aligned. `place` is the place of the joint in working pixels. A limb is
+/// also folded.
+fn about(
+    stage: &Stage,
+    d: usize,
+    model: usize,
+    (joint, place): (&Binding, Point),
+    unclaimed: Option<&Unclaimed>,
+) -> Vec<Hypothesis> {
+    let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
+    let mut starts: Vec<Vec<Point>> = Vec::new();
+    for shape in [&own.texture.mesh.rest, &own.bent] {
+        let folded = if unclaimed.is_some() { folded(own, shape, joint) } else { Vec::new() };
+        for shape in std::iter::once(shape).chain(&folded) {
+            let pivot = joint.at(shape);
+            for degrees in (0..360).step_by(TURN_STEP) {
+                let turn = Point::from_angle((degrees as f64).to_radians());
+                starts.push(shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect());
+            }
+        }
+    }
+    let kept = best_apart(ranked(own, &scenery, starts.into_iter(), unclaimed), KEPT);
+    kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
+}
+
+/// A shape of a limb with the half folded that is away from a joint.
+fn folded(own: &Model, shape: &[Point], joint: &Binding) -> Vec<Vec<Point>> {
+    let Some(limb) = &own.limb else { return Vec::new() };
+    let towards_end = limb.place_of(joint) < 0.5;
+    let fold = |place: f64| {
+        let angles = FOLDS.iter().flat_map(|angle| [-angle, *angle]).map(f64::to_radians);
+        angles.map(move |angle| limb.folded(shape, Joint { place, towards_end }, angle))
+    };
+    JOINTS.into_iter().flat_map(fold).collect()
+}
+
+/// The best `count` of some poses of a model, of those that are at one place the best.
+pub(super) fn best_apart(mut starts: Vec<Pose>, count: usize) -> Vec<Pose> {
     starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
     let mut kept: Vec<Pose> = Vec::new();
     for start in starts {
+        if kept.len() == count {
+            break;
+        }
         if kept.iter().all(|k| mean_distance(&k.nodes, &start.nodes) > SAME_PLACE) {
             kept.push(start);
         }
-        if kept.len() == KEPT {
-            break;
-        }
     }
-    kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
+    kept
 }
 
 /// The pose of a model that a body's motion carries from the model's key, aligned.

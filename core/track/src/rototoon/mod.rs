@@ -36,8 +36,10 @@ pub mod confidence;
 mod corrected;
 mod corrective;
 pub mod evidence;
+mod figures;
 mod finer;
 mod finish;
+mod fold;
 pub mod joint;
 pub mod lattice;
 pub mod mechanisms;
@@ -64,11 +66,14 @@ use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
 use choice::Choice;
+use figures::Figures;
 use finer::{Broad, Film, Found};
 use finish::{Finish, Finished, finish};
+use joint::figure::claims::Claims;
 use joint::lead::Lead;
 use joint::shadow::Memory;
 use mechanisms::{Mechanism, Mechanisms};
+use mend::{Extended, Guide};
 use outward::plan::Portion;
 use pooled::Pooled;
 use pooling::{corrected_pools, mended_pools, plain_pools};
@@ -101,6 +106,7 @@ pub struct Rototoon {
     mended: BTreeMap<(String, Span), Mended>,
     finished: BTreeMap<(String, Span), Finished>,
     shadows: Memory,
+    figures: Figures,
     untouched: Untouched,
     outward: outward::plan::Memory,
     mechanisms: Mechanisms,
@@ -113,8 +119,8 @@ type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
 #[derive(Clone)]
 struct Mended {
     source: Arc<Pooled>,
-    path: Vec<usize>,
-    leads: Vec<Lead>,
+    guide: Guide,
+    extended: Extended,
     result: Arc<Pooled>,
 }
 
@@ -237,12 +243,14 @@ impl Rototoon {
         for stretch in stretches {
             let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
             let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
-            let bonds = choice.bonds();
+            let canvas = self.canvas(&members, frames, &shared.of(stretch[0]))?;
+            let bonds = choice.bonds(canvas);
             let all = vec![true; members.len()];
             let paths = choice.paths(&bonds, (choice.start(), &all), &mut self.shadows);
             let leads = choice.leads(&bonds, &paths);
+            let claims = choice.claims(&bonds, &paths, &mut self.shadows);
             let sources: Vec<Arc<Pooled>> = stretch.iter().map(|&t| pooled[t].clone()).collect();
-            let mended = self.mend_all(&stretch, &sources, (&paths, &leads), frames, &shared)?;
+            let mended = self.mend_all(&stretch, &sources, (&paths, &leads, claims.as_ref()), frames, &shared)?;
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
             let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
             let paths = choice.paths(&bonds, (paths, &all), &mut self.shadows);
@@ -307,6 +315,7 @@ impl Rototoon {
         self.corrected.retain(|key, _| present.contains(key));
         self.mended.retain(|key, _| present.contains(key));
         self.finished.retain(|key, _| present.contains(key));
+        self.figures.keep_only(&present);
         self.untouched.keep_only(&present);
     }
 
@@ -358,7 +367,7 @@ impl Rototoon {
         &mut self,
         stretch: &[usize],
         pooled: &[Arc<Pooled>],
-        (paths, leads): (&[Vec<usize>], &[Vec<Lead>]),
+        (paths, leads, claims): (&[Vec<usize>], &[Vec<Lead>], Option<&Claims>),
         frames: &Looks,
         shared: &SharedProgress,
     ) -> Result<Vec<Arc<Pooled>>, TrackError> {
@@ -369,16 +378,20 @@ impl Rototoon {
             .map(|&m| {
                 let source = &pooled[m];
                 let key = source.key();
-                let same = |known: &&Mended| {
-                    Arc::ptr_eq(&known.source, source) && known.path == paths[m] && known.leads == leads[m]
-                };
-                if let Some(known) = self.mended.get(&key).filter(same) {
+                let guide = Guide::new(source, &paths[m], &leads[m], claims);
+                let same =
+                    |known: &&Mended| Arc::ptr_eq(&known.source, source) && known.guide.differs_in_figure_only(&guide);
+                let known = self.mended.get(&key).filter(same);
+                if let Some(known) = known.filter(|known| known.guide == guide) {
                     return Ok(known.clone());
                 }
                 let progress = shared.of(stretch[m]);
                 let kit = self.kit(frames, &progress);
-                let result = Arc::new(mended_pools(kit, source, &paths[m], &leads[m])?);
-                Ok(Mended { source: source.clone(), path: paths[m].clone(), leads: leads[m].clone(), result })
+                let before = known.map(|known| (&known.guide, &known.extended));
+                let (result, extended) = mended_pools(kit, source, &guide, before)?;
+                let unchanged = known.filter(|known| Arc::ptr_eq(&known.result.pools, &extended.pools));
+                let result = unchanged.map_or_else(|| Arc::new(result), |known| known.result.clone());
+                Ok(Mended { source: source.clone(), guide, extended, result })
             })
             .collect();
         let mut results = Vec::new();

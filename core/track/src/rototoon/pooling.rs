@@ -2,8 +2,7 @@
 //! joint choice. Each is a pure function of its input.
 
 use super::corrected;
-use super::joint::lead::Lead;
-use super::mend::mend;
+use super::mend::{Extended, Guide, mend};
 use super::pool;
 use super::pooled::Pooled;
 use super::stage::{Kit, Stage};
@@ -48,16 +47,22 @@ pub(super) fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Poo
     Ok(Pooled { job, drawings, models, pools, carried, path, steps, center_reach })
 }
 
-/// Pools with the hypotheses that a joint choice adds.
-pub(super) fn mended_pools(kit: Kit, source: &Pooled, path: &[usize], leads: &[Lead]) -> Result<Pooled, TrackError> {
+/// Pools with the hypotheses that a joint choice adds, and the same before they became shared. `known` are those by another guide
+/// that differs in the unclaimed figure only.
+pub(super) fn mended_pools(
+    kit: Kit,
+    source: &Pooled,
+    guide: &Guide,
+    known: Option<(&Guide, &Extended)>,
+) -> Result<(Pooled, Extended), TrackError> {
     let (drawings, models) = (source.drawings.clone(), source.models.clone());
-    let pools = if models.is_some() {
-        Arc::new(mend(&Stage::set(kit, &source.job, models.clone())?, source, path, leads)?)
+    let extended = if models.is_some() {
+        mend(&Stage::set(kit, &source.job, models.clone())?, source, guide, known)?
     } else {
-        source.pools.clone()
+        Extended::unchanged(&source.pools)
     };
     let Pooled { job, steps, center_reach, .. } = source;
-    let (job, path, center_reach) = (job.clone(), path.to_vec(), center_reach.clone());
-    let carried = Arc::default();
-    Ok(Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach })
+    let (job, path, center_reach) = (job.clone(), guide.path().to_vec(), center_reach.clone());
+    let (pools, carried) = (extended.pools.clone(), Arc::default());
+    Ok((Pooled { job, drawings, models, pools, carried, path, steps: *steps, center_reach }, extended))
 }

@@ -9,6 +9,7 @@
 
 use super::lattice::align::{Aligner, Settler, Target, draw, settle};
 use super::lattice::anchors::Anchors;
+use super::lattice::limb::Limb;
 use super::lattice::texture::{Cover, Texture, in_picture};
 use crate::contract::error::TrackError;
 use crate::shared::features::Features;
@@ -42,6 +43,8 @@ pub struct Model {
     /// The nodes in the shape of the other key, moved rigidly with scale onto this key's contour: the part if it only
     /// bent.
     pub bent: Vec<Point>,
+    /// The part as a limb. None if it is not slender.
+    pub limb: Option<Limb>,
 }
 
 /// A drawing on which poses are searched.

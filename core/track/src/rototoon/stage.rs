@@ -3,6 +3,7 @@
 
 use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
+use super::lattice::limb::Limb;
 use super::lattice::mesh::Mesh;
 use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
@@ -227,5 +228,6 @@ fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64),
     if !mechanisms.has(Mechanism::FigureAndGround) {
         texture.forget_figure();
     }
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent }
+    let limb = Some(&texture.mesh).filter(|_| job.closed && mechanisms.has(Mechanism::Folds)).and_then(Limb::of);
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, limb }
 }

@@ -2,6 +2,7 @@
 
 use super::companion::{Companions, Pair};
 use super::contender::{Contender, Paths, State};
+use super::figure::{Figure, Rest};
 use super::shadow::Shadows;
 use super::tie::Tie;
 use crate::rototoon::select::Smoothness;
@@ -20,6 +21,8 @@ pub struct Scene<'a> {
     pub companions: &'a Companions<'a>,
     /// How far drawings jump ([`super::jumps`]), in working pixels.
     pub jump: f64,
+    /// What the hypotheses explain of the figure. None where colours do not tell.
+    pub figure: Option<&'a Figure>,
 }
 
 impl Scene<'_> {
@@ -119,7 +122,22 @@ impl Scene<'_> {
             let points: Vec<&[Point]> = pools.map(|(&h, pool)| &pool[h].points[..]).collect();
             self.smoothness(c).of_path(&points)
         };
-        seen.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>() + self.torn(who, paths)
+        let on = |d: usize| {
+            let states: Vec<(usize, State)> = who.iter().map(|&c| (c, (d, paths[c][d]))).collect();
+            self.unexplained(&self.rest((who, d), paths), &states)
+        };
+        let unexplained: f64 = (0..paths[who[0]].len()).map(on).sum();
+        seen.iter().map(looks).sum::<f64>() + who.iter().map(smooth).sum::<f64>() + self.torn(who, paths) + unexplained
+    }
+
+    /// What the contenders that are not in `who` leave of the figure on a drawing of those that are.
+    pub fn rest(&self, (who, d): (&[usize], usize), paths: &Paths) -> Option<Rest> {
+        self.figure.map(|figure| figure.rest(self.contenders, (who, d), paths))
+    }
+
+    /// Cost of what stays unexplained of a rest with these states.
+    pub fn unexplained(&self, rest: &Option<Rest>, states: &[(usize, State)]) -> f64 {
+        self.figure.zip(rest.as_ref()).map_or(0.0, |(figure, rest)| figure.cost(rest, states))
     }
 
     /// Cost of the joints and companions of the contenders in `who`. What is between two of them counts once.

@@ -28,6 +28,16 @@ pub enum Lead {
     Body(Vec<Option<Motions>>),
 }
 
+impl Lead {
+    /// The place of the joint on a drawing, if it is a joint that leads there.
+    pub fn place(&self, d: usize) -> Option<Point> {
+        match self {
+            Self::Hinge { places, .. } => places[d],
+            Self::Body(_) => None,
+        }
+    }
+}
+
 /// The leads of each contender. `paths` are the present choices.
 pub fn leads(contenders: &[Contender], bonds: &Bonds, paths: &Paths) -> Vec<Vec<Lead>> {
     let companions = Companions::new(contenders, &bonds.companions);

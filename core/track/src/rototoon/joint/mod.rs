@@ -5,8 +5,8 @@
 //! right one. So if two equal legs both choose the same drawn leg, that costs more than one on each. And a part that is
 //! really hidden is not pulled out to a place that happens to have its colour.
 //!
-//! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]) and of companions that
-//! come apart ([`companion`]). U is the visible energy of a hypothesis, given the choices of the nearer parts. The
+//! The energy is E = Σ_parts [ Σ_drawings √U + smoothness ] plus the cost of torn joints ([`tie`]), of companions that
+//! come apart ([`companion`]), and of what the picture shows of the figure and no part explains ([`figure`](mod@figure)). U is the visible energy of a hypothesis, given the choices of the nearer parts. The
 //! smoothness is that of [`super::select`].
 //!
 //! E is lowered by moves. A move changes the paths of one part, or of two parts of which one hides the other, on all
@@ -19,6 +19,7 @@
 pub mod companion;
 mod contender;
 pub mod cost;
+pub mod figure;
 pub mod jumps;
 pub mod lead;
 pub mod margin;
@@ -32,9 +33,12 @@ pub mod tie;
 pub use contender::Contender;
 
 use companion::{Companions, Pair};
+use figure::Figure;
+use figure::canvas::Canvas;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use tie::Tie;
 
 /// Largest number of rounds over all parts and pairs.
@@ -49,6 +53,8 @@ pub struct Bonds {
     pub ties: Vec<Tie>,
     /// Parts that go with others.
     pub companions: Vec<Pair>,
+    /// The figure that they explain together. None where colours do not tell.
+    pub canvas: Option<Arc<Canvas>>,
 }
 
 /// The hypothesis that each contender follows on each of its drawings; `bonds` hold them together, `jump` is how far
@@ -61,11 +67,13 @@ pub fn choose(
     memory: &mut Memory,
 ) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
-    if shadows.none() && bonds.ties.is_empty() && bonds.companions.is_empty() && jump == 0.0 {
+    let figure = bonds.canvas.as_ref().map(|canvas| Figure::new(canvas, contenders, memory));
+    if shadows.none() && bonds.ties.is_empty() && bonds.companions.is_empty() && jump == 0.0 && figure.is_none() {
         return paths;
     }
     let companions = Companions::new(contenders, &bonds.companions);
-    let scene = cost::Scene { contenders, shadows: &shadows, ties: &bonds.ties, companions: &companions, jump };
+    let (ties, figure) = (&bonds.ties[..], figure.as_ref());
+    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, figure };
     let pairs = shadows.pairs();
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span
@@ -97,7 +105,9 @@ pub fn margins(
 ) -> Vec<Vec<f64>> {
     let shadows = Shadows::cast(contenders, memory);
     let companions = Companions::new(contenders, &bonds.companions);
-    let scene = cost::Scene { contenders, shadows: &shadows, ties: &bonds.ties, companions: &companions, jump };
+    let figure = bonds.canvas.as_ref().map(|canvas| Figure::new(canvas, contenders, memory));
+    let (ties, figure) = (&bonds.ties[..], figure.as_ref());
+    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, figure };
     margin::margins(&scene, paths, free)
 }
 

@@ -7,6 +7,7 @@
 use super::contender::{Paths, State};
 use super::cost::Scene;
 use super::pairs::{PairProblem, best_pair};
+use super::tie::overlap;
 use crate::rototoon::select::{Candidate, best_path};
 
 /// Hypotheses per part and drawing that a move of two parts considers.
@@ -27,7 +28,8 @@ impl Scene<'_> {
     }
 
     /// The contenders whose choices a move of `who` depends on: the contenders that hide them, that they hide, that
-    /// hide the same contenders as they do, that they are joined to, and that are their companions.
+    /// hide the same contenders as they do, that they are joined to, and that are their companions. All at the same time
+    /// explain the figure together.
     pub fn seen_by(&self, who: &[usize]) -> Vec<usize> {
         let mut seen: Vec<usize> = who.to_vec();
         for &c in who {
@@ -39,6 +41,11 @@ impl Scene<'_> {
             seen.extend(self.ties.iter().filter_map(|tie| Some(tie.other(c)?.0)));
             seen.extend(self.companions.pairs.iter().filter_map(|pair| pair.other(c)));
         }
+        if self.figure.is_some() {
+            let spans = |k: usize| self.contenders[k].span;
+            let meets = |k: &usize| who.iter().any(|&c| overlap(spans(*k), spans(c)));
+            seen.extend((0..self.contenders.len()).filter(meets));
+        }
         seen.sort_unstable();
         seen.dedup();
         seen
@@ -49,7 +56,9 @@ impl Scene<'_> {
         let pools = self.contenders[c].pools;
         let candidates: Vec<Vec<Candidate>> = (0..pools.len())
             .map(|d| {
-                let of = |h: usize| Candidate { cost: self.alone(c, (d, h), paths, None), points: &pools[d][h].points };
+                let rest = self.rest((&[c], d), paths);
+                let cost = |h: usize| self.alone(c, (d, h), paths, None) + self.unexplained(&rest, &[(c, (d, h))]);
+                let of = |h: usize| Candidate { cost: cost(h), points: &pools[d][h].points };
                 (0..pools[d].len()).map(of).collect()
             })
             .collect();
@@ -86,18 +95,20 @@ impl Scene<'_> {
             |&f: &usize| self.look_behind(far, (d, f), paths, Some(near)) + self.joints(far, (d, f), paths, Some(near));
         let far_costs: Vec<f64> = states[0][d].iter().map(far_alone).collect();
         let near_costs: Vec<f64> = states[1][d].iter().map(|&n| self.alone(near, (d, n), paths, Some(far))).collect();
+        let rest = self.rest((&[far, near], d), paths);
         let mut table = Vec::new();
         for (&f, far_cost) in states[0][d].iter().zip(&far_costs) {
             for (&n, near_cost) in states[1][d].iter().zip(&near_costs) {
                 let look = self.look(far, (d, f), paths, Some((near, n)));
                 let torn = self.bond((far, (d, f)), (near, (d, n)));
-                table.push(look + torn + far_cost + near_cost);
+                let unexplained = self.unexplained(&rest, &[(far, (d, f)), (near, (d, n))]);
+                table.push(look + torn + unexplained + far_cost + near_cost);
             }
         }
         table
     }
 
-    /// Cost of a state without motion. The contender `but` does not count.
+    /// Cost of a state without motion and without what it leaves unexplained. The contender `but` does not count.
     pub fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
         self.look(c, state, paths, None) + self.look_behind(c, state, paths, but) + self.joints(c, state, paths, but)
     }

@@ -7,6 +7,7 @@
 //! Limit: the contours are drawn with pixels of 3 × 3 working pixels.
 
 use super::contender::{Contender, State};
+use super::figure::{self, Covered};
 use crate::rototoon::lattice::texture::UNSEEN;
 use crate::rototoon::pool::{Hypothesis, Pools};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -103,6 +104,7 @@ pub struct Memory {
 struct Casts {
     masks: BTreeMap<(usize, usize), PairCast>,
     costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
+    covered: BTreeMap<usize, (Arc<Pools>, Arc<Covered>)>,
 }
 
 /// A far and a near contender, and their masks. `None` if the near one hides no sample.
@@ -115,6 +117,23 @@ impl Memory {
     /// Forgets the shadows that were not used since the last call of this function.
     pub fn turn(&mut self) {
         self.before = std::mem::take(&mut self.now);
+    }
+
+    /// The blocks inside the contour of each hypothesis of the contenders, in a picture of so many columns and rows of
+    /// blocks. None for those that hide nothing.
+    pub fn covered(&mut self, contenders: &[Contender], size: (usize, usize)) -> Vec<Option<Arc<Covered>>> {
+        let known = |c: &Contender| {
+            let address = address(c.pools);
+            let known = self.now.covered.get(&address).or_else(|| self.before.covered.get(&address));
+            known.map_or_else(|| Arc::new(figure::covered(c, size)), |(_, covered)| covered.clone())
+        };
+        let found: Vec<Option<Arc<Covered>>> =
+            contenders.par_iter().with_max_len(1).map(|c| c.hides.then(|| known(c))).collect();
+        for (c, covered) in contenders.iter().zip(&found) {
+            let keep = |covered: &Arc<Covered>| (c.pools.clone(), covered.clone());
+            self.now.covered.extend(covered.as_ref().map(|covered| (address(c.pools), keep(covered))));
+        }
+        found
     }
 }
 

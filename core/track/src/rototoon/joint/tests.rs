@@ -18,34 +18,34 @@ use rototoon_base::scene::{Raster, Span};
 use std::sync::Arc;
 
 /// A bar of 20 × 80 working pixels. The origin is the middle of its upper end.
-fn bar() -> Vec<Point> {
+pub fn bar() -> Vec<Point> {
     [(-10.0, 0.0), (10.0, 0.0), (10.0, 80.0), (-10.0, 80.0)].map(|(x, y)| Point::new(x, y)).to_vec()
 }
 
-fn turned(shape: &[Point], degrees: f64, to: Point) -> Vec<Point> {
+pub fn turned(shape: &[Point], degrees: f64, to: Point) -> Vec<Point> {
     let turn = Point::from_angle(f64::to_radians(degrees));
     shape.iter().map(|&p| turn.rotate(p) + to).collect()
 }
 
 /// A model of a shape on plain paper. `there` is its rotation and shift to the other key.
-fn model(shape: &[Point], there: (f64, Point)) -> Model {
+pub fn model(shape: &[Point], there: (f64, Point)) -> Model {
     let paper = Features::new(&Raster::new(540, 540, [0.5f32; 3]));
     let mesh = Mesh::new(shape, true);
     let rest = mesh.rest.clone();
     let cover = Cover::none(540.0);
     let texture = Texture::new(mesh, &paper, &cover, 540.0);
     let there = turned(&rest, there.0, there.1);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest }
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest, limb: None }
 }
 
-fn hypothesis(model: &Model, degrees: f64, to: Point, look: f32) -> Hypothesis {
+pub fn hypothesis(model: &Model, degrees: f64, to: Point, look: f32) -> Hypothesis {
     let nodes = turned(&model.texture.mesh.rest, degrees, to);
     let points = model.texture.mesh.control_points(&nodes);
     let differences = vec![look; model.texture.measured().len()];
     Hypothesis::new(0, Pose { nodes, energy: f64::from(look) }, points, differences)
 }
 
-fn three_drawings() -> Vec<Drawing> {
+pub fn three_drawings() -> Vec<Drawing> {
     (0..3).map(|i| Drawing { first: i, last: i }).collect()
 }
 
@@ -77,7 +77,7 @@ fn two_parts_do_not_take_the_same_place() {
         let both = [contender(0, &far, &far_models, 0.0), contender(1, &near, &near_models, depth)];
         choose(
             &both,
-            &Bonds { ties: tie::find(&both), companions: Vec::new() },
+            &Bonds { ties: tie::find(&both), companions: Vec::new(), canvas: None },
             0.0,
             (vec![vec![0, 0, 0]; 2], &[true; 2]),
             memory,
@@ -259,7 +259,7 @@ fn an_eye_stays_with_the_head_that_jumps() {
         assert!(companions.apart(0, (1, 1), (1, 0)) < 1e-9);
         assert!((companions.apart(0, (1, 0), (1, 0)) - 80.0).abs() < 1e-9);
         let chosen = |companions: Vec<companion::Pair>| {
-            let bonds = Bonds { ties: Vec::new(), companions };
+            let bonds = Bonds { companions, ..Bonds::default() };
             choose(both, &bonds, 1e-6, (vec![vec![0, 0, 0]; 2], &[true; 2]), &mut Memory::default())
         };
         assert_eq!(chosen(Vec::new()), [[0, 0, 0], [0, 0, 0]], "alone it moves evenly");
@@ -270,8 +270,11 @@ fn an_eye_stays_with_the_head_that_jumps() {
 #[test]
 fn the_head_leads_an_eye_that_is_elsewhere() {
     with_head_and_eye(Point::new(30.0, 10.0), Point::ZERO, |both| {
-        let bonds =
-            Bonds { ties: Vec::new(), companions: companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false) };
+        let bonds = Bonds {
+            ties: Vec::new(),
+            companions: companion::find(both, &[vec![0; 3], vec![0; 3]], &|_, _| false),
+            canvas: None,
+        };
         let led = leads(both, &bonds, &[vec![0, 0, 0], vec![0, 0, 0]]);
         let [Lead::Body(motions)] = &led[1][..] else { panic!("one lead, {:?}", led[1]) };
         assert!(led[0].is_empty() && motions[0].is_none() && motions[2].is_none());
@@ -338,6 +341,7 @@ fn a_further_key_of_a_part_keeps_its_companions() {
     let all = [half(0), half(1), whole];
     let bonds = Bonds {
         ties: Vec::new(),
+        canvas: None,
         companions: companion::find(&all, &[vec![0; 3], vec![0; 3], vec![0; 5]], &|_, _| false),
     };
     let parts: Vec<[usize; 2]> = bonds.companions.iter().map(|pair| pair.parts).collect();

@@ -7,6 +7,7 @@
 //!
 //! - [`grid`]: cells of a grid, numbered
 //! - [`mesh`]: cells, nodes, and points bound to them
+//! - [`limb`]: long parts, which fold at joints
 //! - [`unknowns`]: which nodes an alignment moves together
 //! - [`shape`]: how much a lattice is bent
 //! - [`anchors`]: the artist's corrections as constraints
@@ -18,6 +19,7 @@ pub mod align;
 pub mod anchors;
 pub mod equations;
 pub mod grid;
+pub mod limb;
 pub mod mesh;
 pub mod shape;
 pub mod texture;

@@ -38,7 +38,7 @@ pub(super) fn track(kit: Kit, job: &OutwardJob) -> Result<OutwardTrack, TrackErr
     let mesh = Mesh::new(&key, job.closed);
     let (there, bent) = (mesh.rest.clone(), mesh.rest.clone());
     let texture = Texture::new(mesh, &features, &cover, width);
-    let model = Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent };
+    let model = Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, limb: None };
     let templates = Templates::new(&model, &features, &model.cover, &key, width);
     let rival = rival(&model, templates.as_ref(), &key, &features);
     let ground = Ground { kit, job, model: &model, key: &key, scale, width, templates: templates.as_ref(), rival };

@@ -1,0 +1,90 @@
+//! Hypotheses of limbs that are folded at a joint or drawn longer and shorter, where something of the figure is unexplained.
+//!
+//! A limb in doubt is tried with each half turned about a joint in the middle and to both sides of it, in steps of 20°, and
+//! with each half longer and shorter. The starts are ranked by their fit and by how much they cover of what the other
+//! parts leave of the figure ([`claims`](super::joint::figure::claims)). The best few are aligned.
+
+use super::joint::figure::claims::Unclaimed;
+use super::lattice::limb::Joint;
+use super::mend::{SAME_PLACE, best_apart};
+use super::pool::{Hypothesis, hypothesis};
+use super::propagate::{Model, Pose, Scenery};
+use super::stage::Stage;
+use rototoon_base::geometry::Point;
+
+/// Places of the joints that are tried, along the limb.
+pub const JOINTS: [f64; 3] = [0.35, 0.5, 0.65];
+/// Angles of a fold in degrees, to either side.
+const ANGLES: [f64; 6] = [20.0, 40.0, 60.0, 80.0, 100.0, 120.0];
+/// Lengths of a half that are tried.
+const LENGTHS: [f64; 3] = [0.7, 1.25, 1.5];
+/// Hypotheses kept of each model.
+const KEPT: usize = 6;
+/// Number of starts, by their fit, for which it is asked what they cover.
+const BEST_FITS: usize = 100;
+/// A part is in doubt where the chains of its two models are this far apart, in working pixels.
+const DOUBT: f64 = 3.0;
+/// How much a start gains that covers as much unclaimed figure as the part is large, in units of √E.
+const WORTH: f64 = 0.3;
+
+/// New hypotheses on a drawing: the best folds of some hypotheses of each model, aligned.
+pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: &Unclaimed) -> Vec<Hypothesis> {
+    let of_model = |model: usize| {
+        let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
+        let starts = bases.iter().filter(|base| base.model == model).flat_map(|base| folded(own, &base.pose.nodes));
+        let kept = best_apart(ranked(own, &scenery, starts, Some(unclaimed)), KEPT);
+        let align = |start: Pose| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None);
+        kept.into_iter().map(align).collect::<Vec<_>>()
+    };
+    (0..2).flat_map(of_model).collect()
+}
+
+/// The hypotheses of a pool that are folded: the one that is `chosen`, the best one of the other model, and the two that were
+/// carried from the keys. None where the part is not in doubt.
+pub(super) fn bases(pool: &[Hypothesis], chosen: usize) -> Vec<&Hypothesis> {
+    if !matches!(pool, [a, b, ..] if a.distance(b) > DOUBT) {
+        return Vec::new();
+    }
+    let chosen = &pool[chosen];
+    let others = pool.iter().filter(|h| h.model != chosen.model);
+    let other = others.min_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy));
+    let mut bases: Vec<&Hypothesis> = Vec::new();
+    for base in std::iter::once(chosen).chain(other).chain(&pool[..2]) {
+        if bases.iter().all(|known| known.model != base.model || known.distance(base) > SAME_PLACE) {
+            bases.push(base);
+        }
+    }
+    bases
+}
+
+/// All folds of a pose. None if the part is no limb.
+fn folded(own: &Model, nodes: &[Point]) -> Vec<Vec<Point>> {
+    let Some(limb) = &own.limb else { return Vec::new() };
+    let mut starts = Vec::new();
+    for joint in JOINTS.into_iter().flat_map(|place| [false, true].map(|towards_end| Joint { place, towards_end })) {
+        let angles = ANGLES.iter().flat_map(|a| [-a, *a]).map(f64::to_radians);
+        starts.extend(angles.map(|angle| limb.folded(nodes, joint, angle)));
+        starts.extend(LENGTHS.iter().map(|factor| limb.stretched(nodes, joint, *factor)));
+    }
+    starts
+}
+
+/// The starts that fit best, with what ranks them in place of their energy: the fit as √E, less what they cover of the unclaimed
+/// figure.
+pub(super) fn ranked(
+    own: &Model,
+    scenery: &Scenery,
+    starts: impl Iterator<Item = Vec<Point>>,
+    unclaimed: Option<&Unclaimed>,
+) -> Vec<Pose> {
+    let mut poses: Vec<Pose> = starts.map(|nodes| own.ranked(scenery, nodes)).collect();
+    let Some(unclaimed) = unclaimed else { return poses };
+    poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+    poses.truncate(BEST_FITS);
+    let mesh = &own.texture.mesh;
+    for pose in &mut poses {
+        let covered = unclaimed.share(&mesh.control_points(&pose.nodes), (mesh.size - 1.0).powi(2));
+        pose.energy = pose.energy.max(0.0).sqrt() - WORTH * covered;
+    }
+    poses
+}
