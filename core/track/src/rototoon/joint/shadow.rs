@@ -7,7 +7,7 @@
 //! Limit: the contours are drawn with pixels of 3 × 3 working pixels.
 
 use super::contender::{Contender, State};
-use super::figure::{self, Covered};
+use super::figure::covered::{Covered, covered};
 use crate::rototoon::lattice::texture::UNSEEN;
 use crate::rototoon::pool::{Hypothesis, Pools};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
@@ -125,7 +125,7 @@ impl Memory {
         let known = |c: &Contender| {
             let address = address(c.pools);
             let known = self.now.covered.get(&address).or_else(|| self.before.covered.get(&address));
-            known.map_or_else(|| Arc::new(figure::covered(c, size)), |(_, covered)| covered.clone())
+            known.map_or_else(|| Arc::new(covered(c, size)), |(_, known)| known.clone())
         };
         let found: Vec<Option<Arc<Covered>>> =
             contenders.par_iter().with_max_len(1).map(|c| c.hides.then(|| known(c))).collect();

@@ -22,6 +22,7 @@
 pub mod blocks;
 pub mod canvas;
 pub mod claims;
+pub mod covered;
 #[cfg(test)]
 mod tests;
 
@@ -30,6 +31,7 @@ use super::shadow::Memory;
 use blocks::{BLOCK, Blocks};
 use canvas::Canvas;
 use claims::Claims;
+use covered::Covered;
 use rototoon_base::scene::FrameNumber;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,9 +40,6 @@ use std::sync::Arc;
 const WEIGHT: f64 = 0.15;
 /// The least area of a part that counts, in square working pixels.
 const LEAST_AREA: f64 = 64.0;
-
-/// The blocks inside the contour of each hypothesis, by drawing.
-pub type Covered = Vec<Vec<Blocks>>;
 
 /// What each hypothesis of each contender explains.
 pub struct Figure {
@@ -136,11 +135,4 @@ impl Figure {
     fn blocks(&self, (c, (d, h)): (usize, State)) -> Option<&Blocks> {
         Some(&self.covered[c].as_ref()?[d][h])
     }
-}
-
-/// The blocks inside the contour of each hypothesis of a contender.
-pub fn covered(contender: &Contender, size: (usize, usize)) -> Covered {
-    let of =
-        |pool: &Vec<crate::rototoon::pool::Hypothesis>| pool.iter().map(|h| Blocks::inside(&h.points, size)).collect();
-    contender.pools.iter().map(of).collect()
 }
