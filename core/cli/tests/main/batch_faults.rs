@@ -1,8 +1,6 @@
 //! Tests of `rototoon batch` where things go wrong: long manifests, strange paths, folders that vanish, full disks, clocks.
 
-mod season;
-
-use season::{Season, outcomes, steps};
+use crate::season::{Season, outcomes, steps};
 use serde_json::{Value, json};
 use std::fs;
 #[cfg(unix)]

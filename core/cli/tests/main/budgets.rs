@@ -1,6 +1,5 @@
 //! Hostile files meet every command within 2 GB of address space and 10 seconds of processor time. The command ends with
 //! status 0, 1 or 2: it does not panic (101), abort (134) or get killed (137, 152).
-#![cfg(unix)]
 
 use serde_json::{Value, json};
 use std::fs;

@@ -1,10 +1,6 @@
 //! Tests of what stays of files when the program cannot write or is interrupted.
 
-#![cfg(unix)]
-
-mod cartoon;
-
-use cartoon::{Cartoon, FRAMES, bad, command, said, text};
+use crate::cartoon::{Cartoon, FRAMES, bad, command, said, text};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! Tests of `rototoon batch`: results, resuming, files of others, killed workers, exit statuses.
 
-mod season;
-
-use season::{FRAMES, Season, draw, outcomes, square, steps};
+use crate::season::{FRAMES, Season, draw, outcomes, square, steps};
 use serde_json::{Value, json};
 use std::fs;
 #[cfg(unix)]

@@ -1,8 +1,6 @@
 //! Tests of the command line: the files that it writes, its messages, its exit status.
 
-mod cartoon;
-
-use cartoon::{Cartoon, FRAMES, bad, command, draw, good, read, said, square, text};
+use crate::cartoon::{Cartoon, FRAMES, bad, command, draw, good, read, said, square, text};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;

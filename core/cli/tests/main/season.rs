@@ -1,8 +1,5 @@
 //! A folder with small shots, for the tests of `rototoon batch`.
 
-// Each test program uses a part of it.
-#![allow(dead_code)]
-
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs;

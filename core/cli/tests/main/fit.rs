@@ -1,8 +1,6 @@
 //! Tests of `rototoon fit`.
 
-mod cartoon;
-
-use cartoon::{command, text};
+use crate::cartoon::{command, text};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};

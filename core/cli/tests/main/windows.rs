@@ -1,6 +1,5 @@
 //! What is special on Windows: paths with backslashes, drive letters and servers, long paths, names in any script, files
 //! that another program holds open. `cargo xtask windows` runs these tests under Wine.
-#![cfg(windows)]
 
 use serde_json::{Value, json};
 use std::fs::{self, OpenOptions};

@@ -1,8 +1,5 @@
 //! A folder with a short cartoon, and calls of the program, for the tests of the command line.
 
-// Each test program uses a part of it.
-#![allow(dead_code)]
-
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};

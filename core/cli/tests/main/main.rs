@@ -1,0 +1,22 @@
+//! Tests of the command line. They are one program, because a program of its own for each file would cost more to link than to run.
+
+mod batch;
+mod batch_faults;
+#[cfg(unix)]
+mod budgets;
+mod cartoon;
+mod command_line;
+mod documented;
+mod exchange;
+mod fill;
+mod fit;
+mod inputs;
+mod season;
+mod style;
+mod style_reshape;
+mod trace;
+mod tween;
+#[cfg(windows)]
+mod windows;
+#[cfg(unix)]
+mod writing;
