@@ -17,7 +17,6 @@ import numpy as np
 from rototoon.lines import doubts
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
 from ..blender import strokes as st
 from ..common.wording import listed
 from . import drawings as dr
@@ -114,19 +113,6 @@ def after(found: list[Place], frame: int, layer: str, number: int) -> Place | No
     """The place behind a stroke on a frame, or the first one behind the last. `None` if there is none."""
     later = (place for place in found if (place.frame, place.layer, place.number) > (frame, layer, number))
     return next(later, found[0] if found else None)
-
-
-def select(ob, place: Place) -> None:
-    """Selects a stroke for Edit Mode, and its layer as the active one. A closed layer stays as it is."""
-    layer = gp.find_layer(ob, place.layer)
-    if guard.refusal(ob) or layer is None or not guard.open_layers([layer]):
-        return
-    gp.activate(ob, layer)
-    handle = gp.drawings(layer)[place.frame][0]
-    starts = gp.offsets(handle)
-    chosen = np.zeros(int(starts[-1]), bool)
-    chosen[starts[place.index] : starts[place.index + 1]] = True
-    gp.select_points(handle, chosen)
 
 
 def told(confidence: Mapping[tuple[str, int], Mapping[int, float]]) -> str:

@@ -88,6 +88,8 @@ class InBetweens:
     """float64 (N, 2): by span, frame and point."""
     opacities: memoryview
     """float64: by span, frame and stroke. Below 1 while a stroke fades."""
+    held: memoryview
+    """uint8, by span: 1 where no movement between the two drawings can be believed, so that all frames show the earlier one."""
 
 
 def match_strokes(drawings: Drawings, progress: Progress | None = None, **options: Any) -> Matches:

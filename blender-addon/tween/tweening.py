@@ -172,6 +172,8 @@ class Done:
     drawings: int = 0
     keys: int = 0
     """Number of in-betweens that became keys."""
+    held: set[tuple[int, int]] = field(default_factory=set)
+    """Keys between which the earlier one is held, because no movement between the two can be believed."""
 
 
 def finish(ob, plan: Plan) -> Done:
@@ -188,6 +190,8 @@ def finish(ob, plan: Plan) -> Done:
     numbers = {name: number_keys(ob, name, plan, pairs.get(name, {})) for name in plan.frames if name in pairs}
     for call in plan.calls:
         done.spans += len(call.spans)
+        held = [k for k, held in zip(call.spans, call.drawn.held) if held]
+        done.held |= {(call.sheet.frames[k], call.sheet.frames[k + 1]) for k in held}
         for block in between.blocks(call.sheet, call.laid, call.spans, call.drawn):
             span = call.sheet.frames.index(block.first)
             sums = between.write(ob, block, _tracks(block, numbers[block.layer]))

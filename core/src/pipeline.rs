@@ -18,6 +18,7 @@ mod style;
 mod trace;
 mod tween;
 mod unseen;
+mod untracked;
 
 pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
@@ -29,8 +30,9 @@ pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::{TraceMemory, trace};
-pub use tween::{captured, pegs_of, spacing_of, tween, tween_drawn};
+pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
+pub use untracked::untracked;
 
 use crate::export::{self, SvgOptions, svg_with_drawn};
 use crate::fit;

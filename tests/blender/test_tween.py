@@ -315,6 +315,24 @@ def test_bad_input_is_told_or_left_alone(addon):
         bpy.ops.rototoon.in_between()
 
 
+def scribble(seed):
+    """Ten strokes at random places."""
+    chance = np.random.default_rng(seed)
+    return [limb(*chance.uniform(-4, 4, 2), chance.uniform(0, 6), 12, 1.5) for _ in range(10)]
+
+
+def test_a_drawing_that_is_held_is_said(addon):
+    ob = drawing_object(addon)
+    for seed, frame in enumerate((1, 5, 9, 13)):
+        add(addon, ob, "Lines", frame, scribble(min(seed, 2)))
+    assert bpy.ops.rototoon.in_between(frames="ALL") == {"FINISHED"}
+    (said,) = addon("common.reports").take()[-1].warnings
+    assert said.startswith("frames 1 to 5, 5 to 9: no movement between the two drawings can be believed"), said
+    assert np.allclose(content(addon, ob, "Lines", 3).point["position"], content(addon, ob, "Lines", 1).point["position"])
+    assert bpy.ops.rototoon.update_in_betweens() == {"FINISHED"}
+    assert addon("common.reports").take()[-1].warnings == (), "it is said once"
+
+
 def test_a_text_that_is_not_understood_counts_as_none(addon):
     ob = keyed(addon)
     for text in ("{", "[]", '{"Lines": 3}', '{"Lines": {"next": 1, "spans": {"1": {}}}}'):

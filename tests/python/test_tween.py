@@ -3,6 +3,7 @@
 import array
 import dataclasses
 import math
+import random
 
 import pytest
 from rototoon import Cancelled, RototoonError, Strokes, tween
@@ -49,6 +50,25 @@ def test_pairs_made_by_hand_are_kept():
     rows = found.rows.tolist()
     assert rows[0][:3] == [tween.PAIR, 0, 3] and rows[0][3] & tween.BY_HAND
     assert [tween.VANISHED, 1, -1, 0] in rows and [tween.APPEARED, -1, 5, 0] in rows
+
+
+def scribble(seed):
+    """Twelve strokes at random places."""
+    chance = random.Random(seed)
+    strokes = []
+    for _ in range(12):
+        x, y, angle = chance.uniform(0, 300), chance.uniform(0, 300), chance.uniform(0, 6)
+        strokes.append([(x + 5 * k * math.cos(angle + 0.1 * k), y + 5 * k * math.sin(angle + 0.1 * k)) for k in range(12)])
+    return strokes
+
+
+def test_spans_say_whether_they_are_held():
+    given = drawings([scribble(1), scribble(2), scribble(2), scribble(3)])
+    drawn, _ = tween.draw_in_betweens(given, [(0, [5]), (1, [13]), (2, [21])])
+    assert drawn.held.tolist() == [1, 0, 1]
+    first = [point for stroke in scribble(1) for point in stroke]
+    assert drawn.points.tolist()[: len(first)] == pytest.approx(first, abs=1e-9)
+    assert tween.draw_in_betweens(drawings(SHEETS), [])[0].held.tolist() == []
 
 
 def test_all_frames_in_one_call():

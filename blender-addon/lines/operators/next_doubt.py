@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import guard
+from ...blender import guard, selection
 from ...common.operators import Guarded, OnDrawing
 from .. import doubts
 from .match_lines import numbered
@@ -42,7 +42,7 @@ class ROTOTOON_OT_next_doubt(Guarded, OnDrawing, bpy.types.Operator):
             return "No stroke is in doubt"
         scene.frame_set(place.frame)
         settings.doubt_frame, settings.doubt_layer, settings.doubt_number = place.frame, place.layer, place.number
-        doubts.select(ob, place)
+        selection.select_stroke(ob, place.layer, place.frame, place.index)
         others = len({(each.layer, each.number) for each in found}) - 1
         more = f". {others} more in doubt" if others else ""
         verdict = "is probably another stroke" if place.lost else "may be another stroke"

@@ -50,20 +50,29 @@ class Framed:
         return scene.frame_start, scene.frame_end
 
 
-class Tracing(Framed, Long, OnFootage):
-    """Traces in a thread, and writes the strokes in slices."""
+class Sensitive:
+    """An operator that looks for ink."""
 
-    style: bpy.props.EnumProperty(
-        name="Drawing",
-        description="The kind of drawing",
-        items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
-    )
     sensitivity: bpy.props.FloatProperty(
         name="Sensitivity",
         description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
         default=0.0,
         min=0.0,
         max=10.0,
+    )
+
+    def chosen_sensitivity(self, settings) -> float:
+        """The operator's own sensitivity, or that of the panel. The least one is 0.1, because 0 means the panel's."""
+        return max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
+
+
+class Tracing(Framed, Sensitive, Long, OnFootage):
+    """Traces in a thread, and writes the strokes in slices."""
+
+    style: bpy.props.EnumProperty(
+        name="Drawing",
+        description="The kind of drawing",
+        items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
     )
 
     def start(self, context, names: list[str], home: str, new: bool):
@@ -73,9 +82,8 @@ class Tracing(Framed, Long, OnFootage):
         self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
-        # The least sensitivity is 0.1; 0 means that of the panel.
-        sensitivity = max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
-        return tracing.worker(self._plan, tracing.Options(style.lower(), sensitivity, preferences.threads()))
+        options = tracing.Options(style.lower(), self.chosen_sensitivity(settings), preferences.threads())
+        return tracing.worker(self._plan, options)
 
     def finish(self, _context, work):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)

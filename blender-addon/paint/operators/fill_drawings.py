@@ -5,12 +5,12 @@ import bpy
 from ...blender import preferences
 from ...common.operators import Long
 from ...common.wording import counted, listed
-from ...lines.operators.tracing_base import Framed, OnFootage
+from ...lines.operators.tracing_base import Framed, OnFootage, Sensitive
 from .. import filling
 from .. import plan as pl
 
 
-class ROTOTOON_OT_fill_drawings(Framed, Long, OnFootage, bpy.types.Operator):
+class ROTOTOON_OT_fill_drawings(Framed, Sensitive, Long, OnFootage, bpy.types.Operator):
     bl_idname = "rototoon.fill_drawings"
     bl_label = "Fill Drawings"
     bl_description = (
@@ -19,22 +19,13 @@ class ROTOTOON_OT_fill_drawings(Framed, Long, OnFootage, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    sensitivity: bpy.props.FloatProperty(
-        name="Sensitivity",
-        description="Sensitivity to faint ink: with 2, ink may be half as dark as usual. 0 is that of the panel",
-        default=0.0,
-        min=0.0,
-        max=10.0,
-    )
-
     def begin(self, context):
         self._ob = context.object
         settings = self._ob.rototoon
         self._plan = pl.make(self._ob, pl.layer_name(self._ob), *self.span(context))
         self._plan.hold = self.hold
-        # The least sensitivity is 0.1; 0 means that of the panel.
-        sensitivity = max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
-        return filling.worker(self._plan, filling.Options(sensitivity, settings.fill_confidence, preferences.threads()))
+        options = filling.Options(self.chosen_sensitivity(settings), settings.fill_confidence, preferences.threads())
+        return filling.worker(self._plan, options)
 
     def finish(self, _context, work):
         done = yield from filling.finishing(self._ob, self._plan, work.result)

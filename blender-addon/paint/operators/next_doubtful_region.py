@@ -1,10 +1,9 @@
 """Next Doubtful Region: goes from one region whose colour is probably wrong to the next."""
 
 import bpy
-import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, selection
 from ...common.operators import Guarded, OnDrawing
 from .. import doubts
 
@@ -34,26 +33,13 @@ class ROTOTOON_OT_next_doubtful_region(Guarded, OnDrawing, bpy.types.Operator):
             return "No region is in doubt"
         scene.frame_set(place.frame)
         settings.fill_doubt_frame, settings.fill_doubt_number = place.frame, place.number
-        _select(ob, place)
+        selection.select_stroke(ob, settings.fills_layer, place.frame, place.index)
         here = sum(each.frame == place.frame for each in found)
         more = f", {here - 1} more on this frame" if here > 1 else ""
         return (
             f"The colour of region {place.number} is probably wrong on frame {place.frame}{more}: fill it with Paint Bucket, and press "
             "Fill Drawings"
         )
-
-
-def _select(ob, place: doubts.Place) -> None:
-    """Selects a region for Edit Mode, and its layer as the active one. A closed layer stays as it is."""
-    layer = gp.find_layer(ob, ob.rototoon.fills_layer)
-    if guard.refusal(ob) or not guard.open_layers([layer]):
-        return
-    gp.activate(ob, layer)
-    handle = gp.drawings(layer)[place.frame][0]
-    starts = gp.offsets(handle)
-    chosen = np.zeros(int(starts[-1]), bool)
-    chosen[starts[place.index] : starts[place.index + 1]] = True
-    gp.select_points(handle, chosen)
 
 
 CLASSES = (ROTOTOON_OT_next_doubtful_region,)

@@ -214,7 +214,13 @@ class InBetweenArrays(Handle):
             view(weights, "d", bounds[count], 2),
             view(places, "d", points.value, 2),
             view(opacities, "d", opaque),
+            self._held(),
         )
+
+    def _held(self) -> memoryview:
+        count, held = ctypes.c_size_t(), ctypes.c_void_p()
+        call("rototoon_in_betweens_held", self.pointer(), ctypes.byref(count), ctypes.byref(held))
+        return view(held, "B", count.value)
 
 
 class TracedArrays(Handle):
@@ -353,7 +359,7 @@ def view(data: ctypes.c_void_p, kind: str, *shape: int) -> memoryview:
     count = 1
     for length in shape:
         count *= length
-    size = {"i": ctypes.sizeof(ctypes.c_int32), "d": ctypes.sizeof(ctypes.c_double)}[kind]
+    size = {"B": 1, "i": ctypes.sizeof(ctypes.c_int32), "d": ctypes.sizeof(ctypes.c_double)}[kind]
     flat: Any = memoryview(_copy(data, count * size))
     made: memoryview = flat.cast(kind, shape) if count else flat.cast(kind)
     return made

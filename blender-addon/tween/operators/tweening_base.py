@@ -90,4 +90,10 @@ class Tweening(OnKeys, Long):
         if self._plan.blank:
             left_out = counted(self._plan.blank, "span")
             self.warn(f"{left_out} with a blank key {'was' if self._plan.blank == 1 else 'were'} left out")
+        if done.held:
+            spans = ", ".join(f"{first} to {last}" for first, last in sorted(done.held))
+            self.warn(
+                f"frames {spans}: no movement between the two drawings can be believed, so the earlier one is held; press Match Strokes, "
+                "or draw a breakdown"
+            )
         return said

@@ -45,6 +45,8 @@ pub struct RototoonMatches {
 pub struct RototoonInBetweens {
     /// Span `s` has the frames `frame_offsets[s]` to `frame_offsets[s + 1]` (excluded).
     pub frame_offsets: Vec<i32>,
+    /// By span: 1 if the earlier key is held because no movement can be believed, else 0.
+    pub held: Vec<u8>,
     /// For each frame the share of the way between the keys, 0 to 1.
     pub shares: Vec<f64>,
     /// Span `s` has the strokes `stroke_offsets[s]` to `stroke_offsets[s + 1]` (excluded).
@@ -284,6 +286,7 @@ impl RototoonMatches {
 
 impl RototoonInBetweens {
     fn push(&mut self, span: &DrawnSpan, drawings: &Drawings, ranges: &[Range<usize>]) {
+        self.held.push(u8::from(span.held));
         self.shares.extend(&span.shares);
         self.frame_offsets.push(self.shares.len() as i32);
         let firsts = [ranges[span.wanted.key].start, ranges[span.wanted.key + 1].start];

@@ -296,6 +296,29 @@ pub unsafe extern "C" fn rototoon_in_betweens_read(
     }
 }
 
+/// Reads which spans of in-betweens are held. `held` has one number for each span, in the order of the option `spans`, and
+/// lives as long as the handle. The number is 1 where no movement between the two drawings can be believed, so that all
+/// frames show the earlier one; else it is 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_in_betweens_held(
+    in_betweens: *const RototoonInBetweens,
+    span_count: *mut usize,
+    held: *mut *const u8,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(span_count, 0, "span_count")?;
+            clear(held, null(), "held")?;
+            let found = handle(in_betweens, "in_betweens")?;
+            span_count.write(found.held.len());
+            held.write(found.held.as_ptr());
+            Ok(())
+        })
+    }
+}
+
 /// Frees in-betweens. Null is allowed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_in_betweens_free(in_betweens: *mut RototoonInBetweens) {

@@ -50,8 +50,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             .map_err(|error| Failure::of(error, from))?,
     };
     write_whole(to, text.as_bytes())?;
-    if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {
-        line("warning", &format!("{}: {warning}", to.display()));
-    }
+    let warnings = [pipeline::left_out_of_shapes(&document, &extension), pipeline::untracked(&document.scene)];
+    warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
     Ok(())
 }

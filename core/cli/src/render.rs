@@ -1,6 +1,6 @@
 //! `rototoon render`: draws pictures of the result.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::pipeline::{self, Picture, RenderJob};
@@ -63,6 +63,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     progress::run(arguments::threads(given), |bar| {
         pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
     })?;
+    pipeline::untracked(&document.scene).iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }
 

@@ -66,6 +66,8 @@ pub struct DrawnStand {
 pub struct DrawnSpan {
     /// The request.
     pub wanted: Wanted,
+    /// Whether the earlier drawing is held, because no movement between the two can be believed.
+    pub held: bool,
     /// Its strokes, from back to front.
     pub strokes: Vec<Drawn>,
     /// By frame, the share of the way, 0 to 1, for blended attributes.
@@ -165,10 +167,12 @@ impl Sheet {
         }
         let duration = f64::from(to.frame) - f64::from(from.frame);
         // A held key keeps its own widths and colours too.
-        let way = if sequence.is_held(base) { 0.0 } else { 1.0 };
+        let held = sequence.is_held(base);
+        let way = if held { 0.0 } else { 1.0 };
         let share = |&frame: &FrameNumber| way * from.spacing.at((f64::from(frame) - f64::from(from.frame)) / duration);
         Ok(DrawnSpan {
             wanted: wanted.clone(),
+            held,
             strokes: drawn_strokes(&sequence, base, [&from.strokes, &to.strokes]),
             shares: wanted.frames.iter().map(share).map(|s| s.clamp(0.0, 1.0)).collect(),
             drawings: wanted.frames.par_iter().map(|&frame| sequence.at(frame)).collect(),

@@ -19,6 +19,26 @@ use serde_json::{Value, json};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// What [`tween`] says of the in-betweens that it put into the document.
+#[derive(Clone, Debug, Default)]
+pub struct Tweened {
+    /// The drawings and the in-betweens in time order, for [`super::suggest_breakdown`].
+    pub shown: Vec<Shown>,
+    /// The frames of both drawings of each span whose earlier drawing is held, because no movement between the two can be
+    /// believed.
+    pub held: Vec<[FrameNumber; 2]>,
+}
+
+impl Tweened {
+    /// What a person is told of the spans that are held. `None` if there are none.
+    pub fn holding(&self) -> Option<String> {
+        let spans: Vec<String> = self.held.iter().map(|[first, last]| format!("{first} to {last}")).collect();
+        let why = "no movement between the two drawings can be believed, so the earlier one is held";
+        let advice = "pair their strokes by hand, or draw a breakdown";
+        (!spans.is_empty()).then(|| format!("frames {}: {why}; {advice}", spans.join(", ")))
+    }
+}
+
 /// Matches the strokes of a document's drawings and puts the in-betweens into the document. With `follow`, strokes on
 /// tracked parts of the document follow these parts. It runs on the caller's rayon pool; the result does not depend on
 /// the pool.
@@ -32,21 +52,7 @@ pub fn tween(
     options: &Options,
     follow: bool,
     progress: &dyn Progress,
-) -> Result<(), PipelineError> {
-    tween_drawn(document, options, follow, progress).map(|_| ())
-}
-
-/// Like [`tween`]. Returns the drawings and the in-betweens in time order, for [`super::suggest_breakdown`].
-///
-/// # Errors
-///
-/// As for [`tween`].
-pub fn tween_drawn(
-    document: &mut Document,
-    options: &Options,
-    follow: bool,
-    progress: &dyn Progress,
-) -> Result<Vec<Shown>, PipelineError> {
+) -> Result<Tweened, PipelineError> {
     let wrong = |error: &dyn std::fmt::Display| PipelineError::Tween(error.to_string());
     let read = document.drawings().map_err(|e| wrong(&e))?;
     if read.drawings.len() < 2 {
@@ -66,7 +72,6 @@ pub fn tween_drawn(
         matchings.push(found.map_err(|e| wrong(&format!("frames {} and {}: {e}", pair[0].frame, pair[1].frame)))?);
     }
     progress.report("drawing in-betweens", 0.8)?;
-    let matches = keys.windows(2).zip(&matchings).map(|(pair, m)| written(pair[0].frame, pair[1].frame, m)).collect();
     let frames: Vec<i32> = keys.windows(2).flat_map(|pair| pair[0].frame + 1..pair[1].frame).collect();
     let on_keys: Vec<i32> = keys.iter().map(|key| key.frame).collect();
     let mut sequence = Sequence::new(keys, &matchings, &pegs, options).map_err(|e| wrong(&e))?;
@@ -81,8 +86,12 @@ pub fn tween_drawn(
     });
     let drawn = drawn.collect::<Result<Vec<_>, Cancelled>>()?;
     progress.report("drawing in-betweens", 1.0)?;
+    let spans = || on_keys.windows(2).enumerate().map(|(k, pair)| ([pair[0], pair[1]], sequence.is_held(k)));
+    let matches = spans().zip(&matchings).map(|((span, held), m)| written(span, held, m)).collect();
     document.set_in_betweens(matches, &drawn);
-    Ok(shown(&sequence, &on_keys, drawn))
+    // Where no frame lies between, nothing is held.
+    let held = spans().filter(|([first, last], held)| *held && first + 1 < *last).map(|(span, _)| span).collect();
+    Ok(Tweened { shown: shown(&sequence, &on_keys, drawn), held })
 }
 
 /// The drawings on keys and between them, in time order.
@@ -209,7 +218,7 @@ fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
     (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill: false, colour, material, layer, peg: None })
 }
 
-fn written(frame: i32, next: i32, matching: &Matching) -> Value {
+fn written([frame, next]: [FrameNumber; 2], held: bool, matching: &Matching) -> Value {
     let short = |v: f64| (v * 1e4).round() / 1e4;
     let pairs: Vec<Value> = matching
         .pairs
@@ -235,6 +244,10 @@ fn written(frame: i32, next: i32, matching: &Matching) -> Value {
     // Most drawings have no such lines.
     if !chained.is_empty() {
         written["chained"] = Value::from(chained);
+    }
+    // Nor are most of them held.
+    if held {
+        written["held"] = Value::from(true);
     }
     written
 }

@@ -29,6 +29,21 @@ fn line(x: f64) -> Value {
     json!({"closed": false, "points": [[x, 10], [x + 8.0, 40], [x + 30.0, 60]], "material": 2})
 }
 
+/// Eight strokes at places that follow from `seed`.
+fn scribble(seed: u64) -> Value {
+    let mut state = seed;
+    let mut random = |limit: f64| {
+        state = (state * 1_103_515_245 + 12_345) % (1 << 31);
+        limit * state as f64 / f64::from(1u32 << 31)
+    };
+    let mut stroke = || {
+        let (x, y, angle) = (random(150.0), random(70.0), random(6.0));
+        let at = |k: i32| [x + 4.0 * f64::from(k) * (angle + 0.1 * f64::from(k)).cos(), y + 3.0 * f64::from(k)];
+        json!({"closed": false, "points": (0..10).map(at).collect::<Vec<_>>()})
+    };
+    (0..8).map(|_| stroke()).collect()
+}
+
 fn two_drawings() -> Value {
     json!({"drawings": [
         {"frame": 2, "spacing": "linear", "strokes": [square(100.0, 20.0, 30.0), line(10.0)]},
@@ -155,6 +170,26 @@ fn suggested(places: &[(i32, f64)]) -> String {
     let output = tween(&path, &folder.path().join("out.json"), &["--suggest"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8_lossy(&output.stderr).trim_end().to_owned()
+}
+
+#[test]
+fn a_drawing_that_is_held_is_said() {
+    let (folder, path) = project(json!({"drawings": [
+        {"frame": 0, "strokes": scribble(1)}, {"frame": 4, "strokes": scribble(2)}, {"frame": 5, "strokes": scribble(1)},
+        {"frame": 8, "strokes": scribble(1)}]}));
+    let out = folder.path().join("out.json");
+    let output = tween(&path, &out, &[]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    // Nothing is between 4 and 5.
+    assert!(output.status.success() && said.starts_with("note: frames 0 to 4: no movement"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+    let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+    let held = |k: usize| written["matches"][k].get("held").cloned();
+    assert_eq!([held(0), held(1), held(2)], [Some(json!(true)), Some(json!(true)), None]);
+    for between in &written["in_betweens"].as_array().unwrap()[..3] {
+        let points = |k: usize| between["strokes"][k]["points"].as_array().unwrap().len();
+        assert_eq!((0..8).map(points).sum::<usize>(), 80, "the strokes of the earlier drawing");
+    }
 }
 
 #[test]

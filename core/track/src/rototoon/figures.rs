@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// What is kept, by name and span of the stretches' members.
 #[derive(Default)]
 pub(super) struct Figures {
-    canvases: BTreeMap<(String, Span), (Arc<Plan>, Arc<Canvas>)>,
+    canvases: BTreeMap<(String, Span), (Plan, Arc<Canvas>)>,
 }
 
 impl Figures {
@@ -34,11 +34,11 @@ impl Rototoon {
         let tells = frames.kind == Kind::Painted && self.mechanisms.has(Mechanism::Figure);
         let (Some(plan), Some(first)) = (Plan::of(members).filter(|_| tells), members.first()) else { return Ok(None) };
         let key = first.key();
-        if let Some((_, canvas)) = self.figures.canvases.get(&key).filter(|(known, _)| **known == plan) {
+        if let Some((_, canvas)) = self.figures.canvases.get(&key).filter(|(known, _)| *known == plan) {
             return Ok(Some(canvas.clone()));
         }
         let canvas = Arc::new(Canvas::new(self.kit(frames, progress), &plan)?);
-        self.figures.canvases.insert(key, (Arc::new(plan), canvas.clone()));
+        self.figures.canvases.insert(key, (plan, canvas.clone()));
         Ok(Some(canvas))
     }
 }

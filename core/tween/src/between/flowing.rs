@@ -5,6 +5,8 @@
 //! are believed, the movement whose drawing is nearer to both keys is taken. If neither is, the earlier key is held. So it is where
 //! the flow brings little ink to ink: then the drawings have nothing in common, and strokes that look alike are alike by chance.
 //!
+//! Two drawings of one stroke each, which are a pair, are not judged: a ball may come near from far away.
+//!
 //! In a span that flows, the strokes of the earlier key flow ahead and are exchanged half way for those of the later key, which
 //! have flowed back until then. Pairs that agree with the flow, and pairs made by hand, are not exchanged: their strokes go
 //! from one shape to the other. Strokes on given pegs go with their pegs.
@@ -74,6 +76,11 @@ pub(super) fn chosen(first: &[Stroke], second: &[Stroke], matching: &Matching, h
     }
 }
 
+/// Whether each of the drawings is one stroke, and the two are a pair: neither could be mistaken for another one.
+fn beyond_doubt(matching: &Matching, first: &[Stroke], second: &[Stroke]) -> bool {
+    first.len() == 1 && second.len() == 1 && matching.pairs.len() == 1
+}
+
 /// Places on the first drawing with their counterparts, from pairs that are evident.
 fn known(first: &[Stroke], second: &[Stroke], matching: &Matching) -> Vec<(Point, Point)> {
     let evident = matching.pairs.iter().filter(|pair| pair.by_hand || pair.confidence >= EVIDENT);
@@ -129,7 +136,7 @@ impl Sequence {
         let mut ways = vec![Way::Matched; given.len()];
         for k in (0..given.len()).filter(|k| base.is_none_or(|base| base == *k)) {
             let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
-            if given[k].sureness(first, second) < credible::SURE {
+            if !beyond_doubt(&given[k], first, second) && given[k].sureness(first, second) < credible::SURE {
                 ways[k] = chosen(first, second, &given[k], &self.half_way(k), self.progress[k].clone());
             }
         }

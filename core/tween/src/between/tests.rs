@@ -106,6 +106,20 @@ fn charts_and_holds_set_the_progress() {
 }
 
 #[test]
+fn a_ball_that_comes_near_grows() {
+    let ball = |radius: f64| vec![circle(Point::new(200.0, 200.0), radius, 0.0)];
+    for radius in [20.0, 50.0, 140.0, 180.0] {
+        let keys = vec![Key { spacing: Spacing::Timing(Timing::Linear), ..key(0, ball(10.0)) }, key(4, ball(radius))];
+        let sequence = sequence(keys, &Options::default());
+        let radius_on = |frame: i32| sequence.at(frame)[0].stroke.length() / std::f64::consts::TAU;
+        let radii = [1, 2, 3].map(radius_on);
+        assert!(!sequence.is_held(0), "{radius}");
+        let rises = radii.windows(2).all(|pair| pair[0] + 1.0 < pair[1]);
+        assert!(rises && radii[0] > 10.5 && radii[2] < radius, "{radius}: {radii:?}");
+    }
+}
+
+#[test]
 fn several_keys_in_a_row_join_smoothly() {
     let at = |frame: i32, x: f64, y: f64, turn: f64| key(frame, vec![circle(Point::new(x, y), 20.0, turn)]);
     let keys = vec![at(0, 0.0, 0.0, 0.0), at(100, 50.0, 10.0, 0.4), at(200, 80.0, 60.0, 1.1), at(300, 20.0, 60.0, 0.9)];
