@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xcd276f096648dcb6
+HEADER_HASH = 0xd4cf67d3386f1fe5
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -701,6 +701,13 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_in_betweens_held.restype = ctypes.c_int32
+    library.rototoon_in_betweens_held.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

@@ -885,6 +885,14 @@ RototoonStatus rototoon_in_betweens_read(const struct RototoonInBetweens *in_bet
                                          const double **opacities,
                                          struct RototoonText **error);
 
+// Reads which spans of in-betweens are held. `held` has one number for each span, in the order of the option `spans`, and
+// lives as long as the handle. The number is 1 where no movement between the two drawings can be believed, so that all
+// frames show the earlier one; else it is 0.
+RototoonStatus rototoon_in_betweens_held(const struct RototoonInBetweens *in_betweens,
+                                         size_t *span_count,
+                                         const uint8_t **held,
+                                         struct RototoonText **error);
+
 // Frees in-betweens. Null is allowed.
 void rototoon_in_betweens_free(struct RototoonInBetweens *in_betweens);
 

@@ -29,16 +29,19 @@ fn line(x: f64) -> Value {
     json!({"closed": false, "points": [[x, 10], [x + 8.0, 40], [x + 30.0, 60]], "material": 2})
 }
 
-/// Eight strokes at places that follow from `seed`.
+/// Eight curved strokes at places that follow from `seed`.
 fn scribble(seed: u64) -> Value {
     let mut state = seed;
     let mut random = |limit: f64| {
-        state = (state * 1_103_515_245 + 12_345) % (1 << 31);
-        limit * state as f64 / f64::from(1u32 << 31)
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        limit * (state >> 32) as f64 / f64::from(u32::MAX)
     };
     let mut stroke = || {
-        let (x, y, angle) = (random(150.0), random(70.0), random(6.0));
-        let at = |k: i32| [x + 4.0 * f64::from(k) * (angle + 0.1 * f64::from(k)).cos(), y + 3.0 * f64::from(k)];
+        let (x, y, angle, bend) = (random(150.0), random(70.0), random(6.0), random(0.6) - 0.3);
+        let at = |k: i32| {
+            let (far, turn) = (5.0 * f64::from(k), angle + bend * f64::from(k));
+            [x + far * turn.cos(), y + far * turn.sin()]
+        };
         json!({"closed": false, "points": (0..10).map(at).collect::<Vec<_>>()})
     };
     (0..8).map(|_| stroke()).collect()
