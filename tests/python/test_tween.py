@@ -66,8 +66,9 @@ def test_spans_say_whether_they_are_held():
     given = drawings([scribble(1), scribble(2), scribble(2), scribble(3)])
     drawn, _ = tween.draw_in_betweens(given, [(0, [5]), (1, [13]), (2, [21])])
     assert drawn.held.tolist() == [1, 0, 1]
-    first = [point for stroke in scribble(1) for point in stroke]
-    assert drawn.points.tolist()[: len(first)] == pytest.approx(first, abs=1e-9)
+    first = [value for stroke in scribble(1) for point in stroke for value in point]
+    shown = [value for point in drawn.points.tolist() for value in point]
+    assert shown[: len(first)] == pytest.approx(first, abs=1e-9)
     assert tween.draw_in_betweens(drawings(SHEETS), [])[0].held.tolist() == []
 
 
