@@ -6,26 +6,22 @@
 
 use super::joint::figure::claims::Unclaimed;
 use super::lattice::limb::Joint;
-use super::mend::{SAME_PLACE, best_apart};
 use super::pool::{Hypothesis, hypothesis};
-use super::propagate::{Model, Pose, Scenery};
+use super::propagate::{Model, Pose};
 use super::stage::Stage;
+use super::starts::{SAME_PLACE, best_apart, ranked};
 use rototoon_base::geometry::Point;
 
 /// Places of the joints that are tried, along the limb.
 pub const JOINTS: [f64; 3] = [0.35, 0.5, 0.65];
 /// Angles of a fold in degrees, to either side.
-const ANGLES: [f64; 6] = [20.0, 40.0, 60.0, 80.0, 100.0, 120.0];
+pub(super) const ANGLES: [f64; 6] = [20.0, 40.0, 60.0, 80.0, 100.0, 120.0];
 /// Lengths of a half that are tried.
 const LENGTHS: [f64; 3] = [0.7, 1.25, 1.5];
 /// Hypotheses kept of each model.
 const KEPT: usize = 6;
-/// Number of starts, by their fit, for which it is asked what they cover.
-const BEST_FITS: usize = 100;
 /// A part is in doubt where the chains of its two models are this far apart, in working pixels.
 const DOUBT: f64 = 3.0;
-/// How much a start gains that covers as much unclaimed figure as the part is large, in units of √E.
-const WORTH: f64 = 0.3;
 
 /// New hypotheses on a drawing: the best folds of some hypotheses of each model, aligned.
 pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: &Unclaimed) -> Vec<Hypothesis> {
@@ -67,24 +63,4 @@ fn folded(own: &Model, nodes: &[Point]) -> Vec<Vec<Point>> {
         starts.extend(LENGTHS.iter().map(|factor| limb.stretched(nodes, joint, *factor)));
     }
     starts
-}
-
-/// The starts that fit best, with what ranks them in place of their energy: the fit as √E, less what they cover of the unclaimed
-/// figure.
-pub(super) fn ranked(
-    own: &Model,
-    scenery: &Scenery,
-    starts: impl Iterator<Item = Vec<Point>>,
-    unclaimed: Option<&Unclaimed>,
-) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = starts.map(|nodes| own.ranked(scenery, nodes)).collect();
-    let Some(unclaimed) = unclaimed else { return poses };
-    poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-    poses.truncate(BEST_FITS);
-    let mesh = &own.texture.mesh;
-    for pose in &mut poses {
-        let covered = unclaimed.share(&mesh.control_points(&pose.nodes), (mesh.size - 1.0).powi(2));
-        pose.energy = pose.energy.max(0.0).sqrt() - WORTH * covered;
-    }
-    poses
 }

@@ -47,13 +47,15 @@ pub enum Mechanism {
     Figure,
     /// Limbs are tried folded at a joint, longer and shorter, where something is unexplained.
     Folds,
+    /// What is behind a neck of a contour is tried turned about it.
+    Branches,
     /// Parts without corrections keep their tracks, unless corrections of other parts make them clearly surer.
     Untouched,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 20] = [
+    pub const ALL: [(Self, &str); 21] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -73,6 +75,7 @@ impl Mechanism {
         (Self::CorrectiveKeys, "corrective-keys"),
         (Self::Figure, "figure"),
         (Self::Folds, "folds"),
+        (Self::Branches, "branches"),
         (Self::Untouched, "untouched"),
     ];
 

@@ -4,19 +4,22 @@
 //! - Where a part is in doubt but a part that it is joined to is not, the place of the joint is known. So the part is
 //!   tried in all directions about the joint. That finds limbs that swung too far or bent too much for the chains, also
 //!   in places that the search over the complete picture ranks too low.
-//! - Limbs are also tried folded, longer and shorter ([`fold`](super::fold)).
+//! - Limbs are also tried folded, longer and shorter ([`fold`](super::fold)), and turned at their necks ([`turns`](super::turns)).
+//!   What is found that way is carried to the neighbours too.
 //! - Where a part is not where the body that it goes with takes it, the body's motion is tried.
 
-use super::fold::{JOINTS, bases, folds, ranked};
+use super::fold::{JOINTS, bases, folds};
 use super::joint::companion::Motions;
 use super::joint::figure::claims::{Claims, Unclaimed};
 use super::joint::lead::Lead;
 use super::lattice::limb::Joint;
 use super::lattice::mesh::Binding;
-use super::pool::{Hypothesis, Pools, hypothesis, is_new, swept};
+use super::pool::{Hypothesis, Pools, add_new, choose, hypothesis, is_new, swept};
 use super::pooled::Pooled;
-use super::propagate::{Model, Pose, mean_distance};
+use super::propagate::Model;
 use super::stage::Stage;
+use super::starts::{best_apart, ranked};
+use super::turns::{Turned, turns};
 use crate::contract::error::TrackError;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
@@ -27,8 +30,6 @@ use std::sync::Arc;
 const TURN_STEP: usize = 15;
 /// Hypotheses kept per model and joint.
 const KEPT: usize = 3;
-/// Two starts nearer than this mean distance of their nodes count as one, in working pixels.
-pub(super) const SAME_PLACE: f64 = 6.0;
 /// Angles in degrees at which a limb is folded that is tried about a joint, to either side.
 const FOLDS: [f64; 3] = [30.0, 60.0, 90.0];
 
@@ -47,6 +48,8 @@ pub(super) struct Extended {
     pub pools: Arc<Pools>,
     /// By drawing: the number of hypotheses with those from neighbours, but without those that were looked for.
     swept: Vec<usize>,
+    /// By drawing: the number with those that were looked for, but without those that were carried on from them.
+    found: Vec<usize>,
 }
 
 impl Guide {
@@ -82,7 +85,8 @@ impl Guide {
 impl Extended {
     /// The pools of a part without free drawings.
     pub fn unchanged(pools: &Arc<Pools>) -> Self {
-        Self { pools: pools.clone(), swept: pools.iter().map(Vec::len).collect() }
+        let counts: Vec<usize> = pools.iter().map(Vec::len).collect();
+        Self { pools: pools.clone(), swept: counts.clone(), found: counts }
     }
 }
 
@@ -106,33 +110,43 @@ pub(super) fn mend(
         .with_max_len(1)
         .map(|d| match known {
             Some((before, known)) if before.unclaimed[d] == guide.unclaimed[d] => {
-                Ok(known.pools[d][known.swept[d]..].to_vec())
+                Ok(known.pools[d][known.swept[d]..known.found[d]].to_vec())
             }
             _ => looked_for(stage, &source.pools, guide, d),
         })
         .collect::<Result<_, TrackError>>()?;
-    pools.iter_mut().zip(found).for_each(|(pool, more)| add(pool, more));
+    add_new(&mut pools, found);
+    let found: Vec<usize> = pools.iter().map(Vec::len).collect();
     // What is the same stays the same piece of memory, by which others know it.
-    let same = known.filter(|(_, known)| *known.pools == pools).map(|(_, known)| known.pools.clone());
-    Ok(Extended { pools: same.unwrap_or_else(|| Arc::new(pools)), swept })
+    let same = |known: &Extended| {
+        known.found == found && known.pools.iter().zip(&pools).all(|(known, pool)| known.starts_with(pool))
+    };
+    if let Some((_, known)) = known.filter(|(_, known)| same(known)) {
+        return Ok(known.clone());
+    }
+    if !stage.models.iter().all(|model| model.necks.is_empty()) {
+        let more = from_found(stage, source, &pools)?;
+        add_new(&mut pools, more);
+    }
+    Ok(Extended { pools: Arc::new(pools), swept, found })
+}
+
+/// New hypotheses on the neighbours of drawings on which the part alone would choose one that was found for the guide.
+fn from_found(stage: &Stage, source: &Pooled, pools: &Pools) -> Result<Pools, TrackError> {
+    let path = choose(stage, pools);
+    if path.iter().zip(source.pools.iter()).all(|(&chosen, before)| chosen < before.len()) {
+        return Ok(Vec::new());
+    }
+    Ok(swept(stage, pools, &path, true, &source.carried)?.0)
 }
 
 /// The pools with the chosen poses carried to their neighbours, and their numbers of hypotheses.
 fn carried_on(stage: &Stage, source: &Pooled, path: &[usize]) -> Result<(Pools, Vec<usize>), TrackError> {
     let mut pools = Pools::clone(&source.pools);
     let (swept, _) = swept(stage, &source.pools, path, true, &source.carried)?;
-    pools.iter_mut().zip(swept).for_each(|(pool, more)| add(pool, more));
+    add_new(&mut pools, swept);
     let counts = pools.iter().map(Vec::len).collect();
     Ok((pools, counts))
-}
-
-/// Adds the hypotheses that are new.
-fn add(pool: &mut Vec<Hypothesis>, more: Vec<Hypothesis>) {
-    for new in more {
-        if is_new(pool, &new) {
-            pool.push(new);
-        }
-    }
 }
 
 /// New hypotheses on a drawing: about the joints with surer parts, where bodies carry the part, and folds.
@@ -156,7 +170,9 @@ fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<V
     }
     if let Some(unclaimed) = unclaimed {
         stage.kit.progress.report("Tracking", 0.85)?;
-        found.extend(folds(stage, d, &bases(&pools[d], guide.path[d]), unclaimed));
+        let bases = bases(&pools[d], guide.path[d]);
+        found.extend(folds(stage, d, &bases, unclaimed));
+        found.extend(turns(stage, d, &bases, &Turned::Pieces(unclaimed)));
     }
     found.retain(|h| is_new(&pools[d], h));
     Ok(found)
@@ -196,21 +212,6 @@ fn folded(own: &Model, shape: &[Point], joint: &Binding) -> Vec<Vec<Point>> {
         angles.map(move |angle| limb.folded(shape, Joint { place, towards_end }, angle))
     };
     JOINTS.into_iter().flat_map(fold).collect()
-}
-
-/// The best `count` of some poses of a model, of those that are at one place the best.
-pub(super) fn best_apart(mut starts: Vec<Pose>, count: usize) -> Vec<Pose> {
-    starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
-    let mut kept: Vec<Pose> = Vec::new();
-    for start in starts {
-        if kept.len() == count {
-            break;
-        }
-        if kept.iter().all(|k| mean_distance(&k.nodes, &start.nodes) > SAME_PLACE) {
-            kept.push(start);
-        }
-    }
-    kept
 }
 
 /// The pose of a model that a body's motion carries from the model's key, aligned.

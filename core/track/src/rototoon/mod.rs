@@ -53,9 +53,11 @@ pub mod refine;
 pub mod search;
 pub mod select;
 pub mod stage;
+mod starts;
 mod steadied;
 pub mod steady;
 pub mod through;
+mod turns;
 mod untouched;
 
 use crate::contract::error::TrackError;

@@ -76,15 +76,20 @@ pub(super) fn fill(stage: &Stage) -> Result<(Pools, Vec<usize>, Carried), TrackE
     pools.iter_mut().zip(found).for_each(|(pool, more)| pool.extend(more));
     let path = choose(stage, &pools);
     let (more, carried) = swept(stage, &pools, &path, false, &Carried::new())?;
-    for (pool, more) in pools.iter_mut().zip(more) {
+    add_new(&mut pools, more);
+    let path = choose(stage, &pools);
+    Ok((pools, path, carried))
+}
+
+/// Adds the hypotheses that are new to the pools of their drawings.
+pub(super) fn add_new(pools: &mut Pools, found: impl IntoIterator<Item = Vec<Hypothesis>>) {
+    for (pool, more) in pools.iter_mut().zip(found) {
         for new in more {
             if is_new(pool, &new) {
                 pool.push(new);
             }
         }
     }
-    let path = choose(stage, &pools);
-    Ok((pools, path, carried))
 }
 
 /// New hypotheses from carrying the chosen ones to their neighbours, in both directions. With `all` they are carried to

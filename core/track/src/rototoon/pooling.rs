@@ -6,6 +6,7 @@ use super::mend::{Extended, Guide, mend};
 use super::pool;
 use super::pooled::Pooled;
 use super::stage::{Kit, Stage};
+use super::turns::with_branches;
 use crate::contract::error::TrackError;
 use crate::contract::job::Job;
 use crate::shared::drawings::Drawing;
@@ -27,7 +28,7 @@ pub(super) fn plain_pools(kit: Kit, job: Job) -> Result<Pooled, TrackError> {
         });
     }
     let stage = Stage::set(kit, &job, None)?;
-    let (pools, path, carried) = pool::fill(&stage)?;
+    let (pools, path, carried) = with_branches(&stage, pool::fill(&stage)?)?;
     let (drawings, models) = (stage.drawings.clone(), Some(stage.models.clone()));
     let (pools, steps) = (Arc::new(pools), stage.steps_done.into_inner());
     let center_reach = vec![0.0; drawings.len()];

@@ -10,6 +10,7 @@
 use super::lattice::align::{Aligner, Settler, Target, draw, settle};
 use super::lattice::anchors::Anchors;
 use super::lattice::limb::Limb;
+use super::lattice::necks::Necks;
 use super::lattice::texture::{Cover, Texture, in_picture};
 use crate::contract::error::TrackError;
 use crate::shared::features::Features;
@@ -45,6 +46,8 @@ pub struct Model {
     pub bent: Vec<Point>,
     /// The part as a limb. None if it is not slender.
     pub limb: Option<Limb>,
+    /// Where the part may turn.
+    pub necks: Necks,
 }
 
 /// A drawing on which poses are searched.

@@ -5,6 +5,7 @@ use super::lattice::align::{Aligner, settle};
 use super::lattice::anchors::Anchors;
 use super::lattice::limb::Limb;
 use super::lattice::mesh::Mesh;
+use super::lattice::necks::Necks;
 use super::lattice::shape;
 use super::lattice::texture::{Cover, Texture};
 use super::mechanisms::{Mechanism, Mechanisms};
@@ -229,5 +230,7 @@ fn model(job: &Job, key: usize, features: &Features, (scale, width): (f64, f64),
         texture.forget_figure();
     }
     let limb = Some(&texture.mesh).filter(|_| job.closed && mechanisms.has(Mechanism::Folds)).and_then(Limb::of);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, limb }
+    let turns = job.closed && mechanisms.has(Mechanism::Branches);
+    let necks = if turns { Necks::of(&texture.mesh) } else { Necks::default() };
+    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, limb, necks }
 }

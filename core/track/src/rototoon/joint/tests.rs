@@ -7,6 +7,7 @@ use super::shadow::Memory;
 use super::{Bonds, Contender, choose, jumps, margins, tie};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
+use crate::rototoon::lattice::necks::Necks;
 use crate::rototoon::lattice::texture::{Cover, Texture};
 use crate::rototoon::pool::{Hypothesis, Pools};
 use crate::rototoon::propagate::{Model, Pose};
@@ -35,7 +36,15 @@ pub fn model(shape: &[Point], there: (f64, Point)) -> Model {
     let cover = Cover::none(540.0);
     let texture = Texture::new(mesh, &paper, &cover, 540.0);
     let there = turned(&rest, there.0, there.1);
-    Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent: rest, limb: None }
+    Model {
+        aligner: Aligner::new(&texture.mesh),
+        texture,
+        cover,
+        there,
+        bent: rest,
+        limb: None,
+        necks: Necks::default(),
+    }
 }
 
 pub fn hypothesis(model: &Model, degrees: f64, to: Point, look: f32) -> Hypothesis {

@@ -8,6 +8,7 @@
 //! - [`grid`]: cells of a grid, numbered
 //! - [`mesh`]: cells, nodes, and points bound to them
 //! - [`limb`]: long parts, which fold at joints
+//! - [`necks`]: necks of a contour, and what is behind them turned
 //! - [`unknowns`]: which nodes an alignment moves together
 //! - [`shape`]: how much a lattice is bent
 //! - [`anchors`]: the artist's corrections as constraints
@@ -21,6 +22,7 @@ pub mod equations;
 pub mod grid;
 pub mod limb;
 pub mod mesh;
+pub mod necks;
 pub mod shape;
 pub mod texture;
 pub mod unknowns;

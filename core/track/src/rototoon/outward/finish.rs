@@ -8,6 +8,7 @@ use crate::contract::error::TrackError;
 use crate::contract::tracking::{Ending, TrackEnd};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
+use crate::rototoon::lattice::necks::Necks;
 use crate::rototoon::lattice::texture::{Cover, Texture};
 use crate::rototoon::propagate::Model;
 use crate::rototoon::refine::{Frame, Key, Refiner};
@@ -38,7 +39,15 @@ pub(super) fn track(kit: Kit, job: &OutwardJob) -> Result<OutwardTrack, TrackErr
     let mesh = Mesh::new(&key, job.closed);
     let (there, bent) = (mesh.rest.clone(), mesh.rest.clone());
     let texture = Texture::new(mesh, &features, &cover, width);
-    let model = Model { aligner: Aligner::new(&texture.mesh), texture, cover, there, bent, limb: None };
+    let model = Model {
+        aligner: Aligner::new(&texture.mesh),
+        texture,
+        cover,
+        there,
+        bent,
+        limb: None,
+        necks: Necks::default(),
+    };
     let templates = Templates::new(&model, &features, &model.cover, &key, width);
     let rival = rival(&model, templates.as_ref(), &key, &features);
     let ground = Ground { kit, job, model: &model, key: &key, scale, width, templates: templates.as_ref(), rival };
