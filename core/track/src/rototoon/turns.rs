@@ -16,6 +16,10 @@ use std::slice;
 
 /// Hypotheses kept of each model and round.
 const KEPT: usize = 6;
+/// A part whose pose fits better than this has nothing to gain: the path counts √E.
+const FITS: f64 = 0.0016;
+/// Number of them that are aligned on the finest level.
+const FINISHED: usize = 3;
 /// Most rounds.
 const ROUNDS: usize = 3;
 
@@ -67,7 +71,9 @@ fn of_model(stage: &Stage, d: usize, model: usize, bases: &[&Hypothesis], turned
         poses.min_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy)).cloned()
     };
     let bases: Vec<&Hypothesis> = bases.iter().copied().filter(|base| base.model == model).collect();
-    let Some(mut best) = least(&mut bases.iter().copied()) else { return Vec::new() };
+    let Some(mut best) = least(&mut bases.iter().copied()).filter(|best| best.pose.energy > FITS) else {
+        return Vec::new();
+    };
     let mut found = once(stage, d, &bases, (necks, unclaimed));
     for _ in 1..ROUNDS {
         match least(&mut found.iter()) {
@@ -94,5 +100,7 @@ fn once(
         necks.iter().flat_map(move |neck| angles().map(|angle| neck.turned(&nodes, angle)).collect::<Vec<_>>())
     };
     let kept = best_apart(ranked(own, &scenery, bases.iter().flat_map(of_base), unclaimed), KEPT);
-    kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
+    let starts: Vec<_> = kept.into_iter().map(|start| start.nodes).collect();
+    let poses = own.best_polished(&scenery, &starts, FINISHED);
+    poses.into_iter().map(|pose| hypothesis(stage, d, model, pose, None)).collect()
 }
