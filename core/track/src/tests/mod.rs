@@ -2,6 +2,7 @@
 //! small drawn scenes of known motion.
 
 mod borders;
+mod branches;
 mod memory;
 mod outward;
 mod progress;
