@@ -14,11 +14,11 @@ use crate::contract::error::TrackError;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use std::slice;
 
-/// Hypotheses kept of each model and round.
-const KEPT: usize = 6;
 /// A part whose pose fits better than this has nothing to gain: the path counts √E.
 const FITS: f64 = 0.0016;
-/// Number of them that are aligned on the finest level.
+/// Starts of each model and round that are aligned on the middle level.
+const KEPT: usize = 6;
+/// Those of them that are aligned on the finest level.
 const FINISHED: usize = 3;
 /// Most rounds.
 const ROUNDS: usize = 3;

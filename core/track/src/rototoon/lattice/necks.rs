@@ -11,8 +11,7 @@
 //! within half its width turn in proportion.
 //!
 //! **Limits.** A neck is found at the key. An arm that lies on the body there has none unless the contour runs around it.
-//! Arms without a body,
-//! like a star's, are no branches. Of a contour with more control points, about [`MOST_POINTS`] are asked.
+//! Arms without a body, like a star's, are no branches. Of a contour with more control points, about [`MOST_POINTS`] are asked.
 
 use super::mesh::{Binding, Mesh};
 use rototoon_base::geometry::{Point, polyline};
@@ -39,13 +38,6 @@ pub struct Necks {
     pub branches: Vec<Neck>,
     /// Those within a limb.
     pub others: Vec<Neck>,
-}
-
-impl Necks {
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.branches.is_empty() && self.others.is_empty()
-    }
 }
 
 /// A neck.
@@ -82,6 +74,11 @@ impl Necks {
             outline.distinct(pairs).iter().map(neck).collect()
         };
         Self { branches: of_kind(true), others: of_kind(false) }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.branches.is_empty() && self.others.is_empty()
     }
 }
 
@@ -270,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn contours_without_a_shape_have_no_necks() {
+    fn necks_of_contours_without_a_shape_are_finite() {
         for outline in [
             vec![(5.0, 5.0)],
             vec![(5.0, 5.0); 9],
