@@ -6,6 +6,7 @@
 //! - [`overlay`]: a contact sheet of tracked and true contours
 //! - [`evidence`]: tables from which the model of confidence is fitted
 //! - [`own`]: sets that this package draws
+//! - [`pins`]: times after a pin
 //! - [`growth`]: time and memory by frames, parts, points and pixels
 //!
 //! A **set** is a folder with `project.json` (key frames only) and `truth.json` ([`crate::truth`]). The command
@@ -17,6 +18,7 @@ pub mod evidence;
 pub mod growth;
 pub mod overlay;
 pub mod own;
+pub mod pins;
 pub mod run;
 pub mod table;
 

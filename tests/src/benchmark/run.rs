@@ -121,7 +121,7 @@ pub fn run(
 }
 
 /// Reads the set's document and tracks it.
-fn first(tracker: &mut Tracker, folder: &Path) -> Result<(Scene, Sequence)> {
+pub(super) fn first(tracker: &mut Tracker, folder: &Path) -> Result<(Scene, Sequence)> {
     let mut document = Document::load(&folder.join("project.json"))?;
     let pictures = frames(&document, folder)?;
     track(tracker, &mut document.scene, &pictures)?;
@@ -129,7 +129,7 @@ fn first(tracker: &mut Tracker, folder: &Path) -> Result<(Scene, Sequence)> {
 }
 
 /// Tracks the scene and stores the tracks. Returns the seconds of tracking only.
-fn track(tracker: &mut Tracker, scene: &mut Scene, pictures: &dyn FrameSource) -> Result<f64> {
+pub(super) fn track(tracker: &mut Tracker, scene: &mut Scene, pictures: &dyn FrameSource) -> Result<f64> {
     let start = Instant::now();
     let tracking = tracker.track(&in_effect(scene), pictures, &Silent)?;
     let seconds = start.elapsed().as_secs_f64();

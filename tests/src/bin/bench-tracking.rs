@@ -8,7 +8,7 @@ use rototoon::scene::Silent;
 use rototoon::track::{Mechanism, Mechanisms, Preset, TrackOptions};
 use rototoon_tests::artist::Rules;
 use rototoon_tests::benchmark::growth::Sample;
-use rototoon_tests::benchmark::{evidence, overlay, own, run};
+use rototoon_tests::benchmark::{evidence, overlay, own, pins, run};
 use rototoon_tests::memory::peak_mb;
 use rototoon_tests::puppet::Puppet;
 use std::io::Cursor;
@@ -55,6 +55,14 @@ enum Command {
         #[arg(long, default_value_t = 0)]
         threads: usize,
     },
+    /// Pin a point of each part in the middle of each span, one at a time, and print how long each track takes as JSON.
+    Pins {
+        /// Folder with project.json and truth.json.
+        folder: PathBuf,
+        /// Number of threads; 0 for one per core.
+        #[arg(long, default_value_t = 0)]
+        threads: usize,
+    },
     /// Write tables with the evidence about every point beside the truth, from which `tests/confidence.py` fits the model.
     Evidence {
         /// The folder to write to.
@@ -82,6 +90,11 @@ fn main() -> Result<()> {
             pool(threads)?.install(|| run_set(&folder, &set, (options, &id), &out, no_edits))
         }
         Command::Time { folder, threads } => pool(threads)?.install(|| time(&folder)),
+        Command::Pins { folder, threads } => {
+            let found = pool(threads)?.install(|| pins::pins(&folder, TrackOptions::default()))?;
+            println!("{}", serde_json::to_string_pretty(&found)?);
+            Ok(())
+        }
         Command::Evidence { out, folders, threads } => pool(threads)?.install(|| tables(&out, &folders)),
         Command::Draw { folder, numbers } => {
             let [width, height, frames, step, parts, points] = numbers[..] else { return Ok(()) };

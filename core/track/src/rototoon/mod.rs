@@ -32,6 +32,7 @@
 //! wide as high.
 
 mod choice;
+mod chosen;
 pub mod confidence;
 mod corrected;
 mod corrective;
@@ -67,7 +68,6 @@ use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
-use choice::Choice;
 use figures::Figures;
 use finer::{Broad, Film, Found};
 use finish::{Finish, Finished, finish};
@@ -109,6 +109,7 @@ pub struct Rototoon {
     finished: BTreeMap<(String, Span), Finished>,
     shadows: Memory,
     figures: Figures,
+    choices: chosen::Memory,
     untouched: Untouched,
     outward: outward::plan::Memory,
     mechanisms: Mechanisms,
@@ -222,7 +223,6 @@ impl Rototoon {
             Some(untouched) => self.settle(scene, tasks, &untouched, &mut done),
             None => self.untouched.keep(scene, &done),
         }
-        self.shadows.turn();
         self.keep_only(film);
         Ok(film.assembled(tasks, done, finer))
     }
@@ -243,27 +243,21 @@ impl Rototoon {
         let stretches = stretches(tasks);
         let wobble = self.wobble(&stretches, &pooled);
         for stretch in stretches {
-            let members: Vec<&Pooled> = stretch.iter().map(|&t| &*pooled[t]).collect();
-            let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
-            let canvas = self.canvas(&members, frames, &shared.of(stretch[0]))?;
-            let bonds = choice.bonds(canvas);
-            let all = vec![true; members.len()];
-            let paths = choice.paths(&bonds, (choice.start(), &all), &mut self.shadows);
-            let leads = choice.leads(&bonds, &paths);
-            let claims = choice.claims(&bonds, &paths, &mut self.shadows);
+            let of = (scene, tasks, &stretch[..]);
             let sources: Vec<Arc<Pooled>> = stretch.iter().map(|&t| pooled[t].clone()).collect();
-            let mended = self.mend_all(&stretch, &sources, (&paths, &leads, claims.as_ref()), frames, &shared)?;
+            let first = self.first_choice(of, sources.clone(), frames, &shared.of(stretch[0]))?;
+            let guides = (&first.paths[..], &first.leads[..], first.claims.as_ref());
+            let mended = self.mend_all(&stretch, &sources, guides, frames, &shared)?;
+            let second = self.second_choice(of, &first, &mended);
             let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let choice = Choice::new((scene, tasks, &stretch), &members, self.mechanisms);
-            let paths = choice.paths(&bonds, (paths, &all), &mut self.shadows);
-            let margins = choice.margins(&bonds, (&paths, &all), &mut self.shadows);
+            let paths = &second.paths;
             let hiding = self.mechanisms.has(Mechanism::Hiding);
-            let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, &paths, (m, hiding));
+            let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, paths, (m, hiding));
             let plans = (0..members.len()).map(plan).collect();
             let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
             let drawn = self.steadied(&stretch, &mended, &wobble, frames, &shared)?;
-            let tracks = self.tracks(&mended, &new, (drawn, margins));
-            let (stretch, pooled, mended, paths, wobble) = (&stretch, &pooled, &mended, &paths, &wobble);
+            let tracks = self.tracks(&mended, &new, (drawn, second.margins.clone()));
+            let (stretch, pooled, mended, wobble) = (&stretch, &pooled, &mended, &wobble);
             let broad = Broad { tasks, stretch, pooled, mended, paths, wobble };
             for (m, (&t, (track, new))) in stretch.iter().zip(tracks).enumerate() {
                 if let Some(film) = film {
@@ -318,7 +312,11 @@ impl Rototoon {
         self.mended.retain(|key, _| present.contains(key));
         self.finished.retain(|key, _| present.contains(key));
         self.figures.keep_only(&present);
+        self.choices.keep_only(&present);
         self.untouched.keep_only(&present);
+        let mended = self.mended.values().map(|mended| &mended.result);
+        let pooled = self.plain.values().chain(self.corrected.values()).chain(mended).chain(self.untouched.pooled());
+        self.shadows.keep_only(pooled.map(|pooled| &pooled.pools));
     }
 
     /// The pools of all tasks, and whether they were computed in this run.

@@ -50,7 +50,8 @@ impl Hypothesis {
         Self { model, pose, points, differences, origin: None }
     }
 
-    fn candidate(&self) -> Candidate<'_> {
+    /// The hypothesis as the path search sees it.
+    pub fn candidate(&self) -> Candidate<'_> {
         Candidate { cost: self.pose.energy.max(0.0).sqrt(), points: &self.points }
     }
 

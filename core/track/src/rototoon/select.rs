@@ -40,12 +40,22 @@ impl Smoothness {
 
     /// Cost of the motion from one drawing to the next.
     pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
-        SPEED * (mean_length(a.len(), |k| b[k] - a[k]) / self.unit).min(CAP)
+        self.of_shift(mean_shift(a, b))
     }
 
     /// Cost of a change of the motion over three drawings.
     pub fn acceleration(&self, a: &[Point], b: &[Point], c: &[Point]) -> f64 {
-        ACCELERATION * (mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k]) / self.unit).min(CAP)
+        self.of_bend(mean_bend(a, b, c))
+    }
+
+    /// Cost of a motion of this mean length, in working pixels.
+    pub fn of_shift(&self, length: f64) -> f64 {
+        SPEED * (length / self.unit).min(CAP)
+    }
+
+    /// Cost of a change of the motion of this mean length, in working pixels.
+    pub fn of_bend(&self, length: f64) -> f64 {
+        ACCELERATION * (length / self.unit).min(CAP)
     }
 
     /// Motion cost of a complete path.
@@ -55,45 +65,76 @@ impl Smoothness {
     }
 }
 
+/// Cost of motion between states, which are given by their indices on neighbouring drawings.
+pub trait Motion {
+    /// Cost of the motion to drawing `d` from the drawing before.
+    fn speed(&self, d: usize, states: [usize; 2]) -> f64;
+    /// Cost of the change of motion over drawing `d` and the two before.
+    fn acceleration(&self, d: usize, states: [usize; 3]) -> f64;
+}
+
+/// The cost of motion between candidates, by their points.
+pub struct Direct<'a> {
+    /// The candidates of each drawing.
+    pub candidates: &'a [Vec<Candidate<'a>>],
+    /// The cost of lengths.
+    pub smoothness: Smoothness,
+}
+
+impl Motion for Direct<'_> {
+    fn speed(&self, d: usize, [g, h]: [usize; 2]) -> f64 {
+        self.smoothness.speed(self.candidates[d - 1][g].points, self.candidates[d][h].points)
+    }
+
+    fn acceleration(&self, d: usize, [f, g, h]: [usize; 3]) -> f64 {
+        let at = |d: usize, state: usize| self.candidates[d][state].points;
+        self.smoothness.acceleration(at(d - 2, f), at(d - 1, g), at(d, h))
+    }
+}
+
 /// Index of the chosen hypothesis on each drawing. Each drawing must have at least one.
 pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
-    let own = |i: usize, h: usize| candidates[i][h].cost;
-    let count = |i: usize| candidates[i].len();
-    if candidates.len() < 2 {
+    let costs: Vec<Vec<f64>> = candidates.iter().map(|states| states.iter().map(|state| state.cost).collect()).collect();
+    path_of_least_cost(&costs, &Direct { candidates, smoothness })
+}
+
+/// Index of the state on each drawing, along the path of least cost. `costs` are those of the states of each drawing, of which
+/// there must be at least one.
+pub fn path_of_least_cost(costs: &[Vec<f64>], motion: &impl Motion) -> Vec<usize> {
+    let own = |i: usize, h: usize| costs[i][h];
+    let count = |i: usize| costs[i].len();
+    if costs.len() < 2 {
         let least = |i: usize| (0..count(i)).min_by(|&a, &b| own(i, a).total_cmp(&own(i, b)));
-        return (0..candidates.len()).filter_map(least).collect();
+        return (0..costs.len()).filter_map(least).collect();
     }
-    let points = |i: usize, h: usize| candidates[i][h].points;
-    let speed = |i: usize, g: usize, h: usize| smoothness.speed(points(i - 1, g), points(i, h));
-    // costs[g][h]: least cost of the paths that end with hypothesis g, then h.
-    let mut costs: Vec<Vec<f64>> =
-        (0..count(0)).map(|g| (0..count(1)).map(|h| own(0, g) + own(1, h) + speed(1, g, h)).collect()).collect();
+    let first = |g: usize, h: usize| own(0, g) + own(1, h) + motion.speed(1, [g, h]);
+    // least[g][h]: least cost of the paths that end with hypothesis g, then h.
+    let mut least: Vec<Vec<f64>> = (0..count(0)).map(|g| (0..count(1)).map(|h| first(g, h)).collect()).collect();
     let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
-    for i in 2..candidates.len() {
+    for i in 2..costs.len() {
         let mut next = vec![vec![f64::INFINITY; count(i)]; count(i - 1)];
         let mut from = vec![vec![0; count(i)]; count(i - 1)];
         for g in 0..count(i - 1) {
             let mut order: Vec<usize> = (0..count(i - 2)).collect();
-            order.sort_by(|&a, &b| costs[a][g].total_cmp(&costs[b][g]));
+            order.sort_by(|&a, &b| least[a][g].total_cmp(&least[b][g]));
             for h in 0..count(i) {
-                let step = own(i, h) + speed(i, g, h);
+                let step = own(i, h) + motion.speed(i, [g, h]);
                 for &f in &order {
                     // A change of speed costs at least 0, so none of the following can be better.
-                    if costs[f][g] + step >= next[g][h] {
+                    if least[f][g] + step >= next[g][h] {
                         break;
                     }
-                    let bend = smoothness.acceleration(points(i - 2, f), points(i - 1, g), points(i, h));
-                    let cost = costs[f][g] + bend + step;
+                    let cost = least[f][g] + motion.acceleration(i, [f, g, h]) + step;
                     if cost < next[g][h] {
                         (next[g][h], from[g][h]) = (cost, f);
                     }
                 }
             }
         }
-        costs = next;
+        least = next;
         origins.push(from);
     }
-    trace_back(&costs, &origins)
+    trace_back(&least, &origins)
 }
 
 /// The states of a path of least cost, from the table of the last two drawings and the origins of the ones before.
@@ -113,6 +154,16 @@ pub(super) fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec
     }
     path.reverse();
     path
+}
+
+/// Mean length of the motion from one drawing to the next, in working pixels.
+pub fn mean_shift(a: &[Point], b: &[Point]) -> f64 {
+    mean_length(a.len(), |k| b[k] - a[k])
+}
+
+/// Mean length of the change of motion over three drawings, in working pixels.
+pub fn mean_bend(a: &[Point], b: &[Point], c: &[Point]) -> f64 {
+    mean_length(c.len(), |k| c[k] - 2.0 * b[k] + a[k])
 }
 
 fn mean_length(count: usize, vector: impl Fn(usize) -> Point) -> f64 {

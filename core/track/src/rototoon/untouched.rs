@@ -62,6 +62,11 @@ impl Untouched {
         self.last = Some((as_corrections(scene, &Corrective::new()), Arc::new(done.clone())));
     }
 
+    /// The pools without corrections.
+    pub fn pooled(&self) -> impl Iterator<Item = &Arc<Pooled>> {
+        self.corrected.values().chain(self.mended.values().map(|mended| &mended.result))
+    }
+
     /// Forgets the spans that are not among these.
     pub fn keep_only(&mut self, present: &BTreeSet<(String, Span)>) {
         self.corrected.retain(|key, _| present.contains(key));

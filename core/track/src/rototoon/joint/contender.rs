@@ -5,6 +5,7 @@ use crate::rototoon::propagate::Model;
 use crate::shared::drawings::Drawing;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Span};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 /// For each contender the index of the hypothesis that it follows on each of its drawings.
@@ -44,6 +45,23 @@ impl Contender<'_> {
         }
         let index = (frame - self.span.first) as usize;
         self.drawings.iter().position(|d| d.first <= index && index <= d.last)
+    }
+
+    /// The drawings of another contender that begin while this one shows its drawing `d`.
+    pub fn meets(&self, d: usize, other: &Contender) -> impl Iterator<Item = usize> {
+        let frames = self.drawings[d].first..=self.drawings[d].last;
+        let offset = i64::from(other.span.first) - i64::from(self.span.first);
+        let begins = other.drawings.iter().map(move |drawing| drawing.first as i64 + offset);
+        let within = move |(e, at): (usize, i64)| usize::try_from(at).is_ok_and(|at| frames.contains(&at)).then_some(e);
+        begins.enumerate().filter_map(within)
+    }
+
+    /// The drawings that this contender shows while another one shows its drawing `d`. `None` if it shows none.
+    pub fn shown_during(&self, other: &Contender, d: usize) -> Option<RangeInclusive<usize>> {
+        let drawing = &other.drawings[d];
+        let [first, last] = [drawing.first, drawing.last].map(|index| other.span.first + index as FrameNumber);
+        let (first, last) = (first.max(self.span.first), last.min(self.span.last));
+        if first > last { None } else { Some(self.drawing_at(first)?..=self.drawing_at(last)?) }
     }
 
     /// First frame of a drawing.

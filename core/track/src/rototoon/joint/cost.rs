@@ -1,13 +1,15 @@
 //! The cost of a choice of hypotheses: their fit, given their occluders, torn joints, and companions that come apart.
 
-use super::companion::{Companions, Pair};
+use super::companion::Companions;
 use super::contender::{Contender, Paths, State};
 use super::figure::{Figure, Rest};
+use super::lengths::{Lengths, Moving};
 use super::shadow::Shadows;
 use super::tie::Tie;
 use crate::rototoon::select::Smoothness;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Span;
+use std::sync::Arc;
 
 /// The parts of a joint choice, their occlusions and their joints.
 pub struct Scene<'a> {
@@ -21,55 +23,29 @@ pub struct Scene<'a> {
     pub companions: &'a Companions<'a>,
     /// How far drawings jump ([`super::jumps`]), in working pixels.
     pub jump: f64,
+    /// By contender: the lengths of motion between its hypotheses.
+    pub lengths: &'a [Arc<Lengths>],
     /// What the hypotheses explain of the figure. None where colours do not tell.
     pub figure: Option<&'a Figure>,
 }
 
 impl Scene<'_> {
-    /// √U of a state of contender `c`: its fit given the choices of the contenders that may hide it. `instead` is
-    /// (contender, hypothesis) and replaces that contender's choice.
-    pub fn look(&self, c: usize, (d, h): State, paths: &Paths, instead: Option<(usize, usize)>) -> f64 {
+    /// √U of a state of contender `c`: its fit given the choices of the contenders that may hide it.
+    pub fn look(&self, c: usize, (d, h): State, paths: &Paths) -> f64 {
         let frame = self.contenders[c].frame_of(d);
         let mut hidden = vec![0u64; self.shadows.words(c, d, h)];
-        for n in self.shadows.in_front_of(c) {
-            let replaced = instead.filter(|(who, _)| who == n).map(|(_, choice)| choice);
-            let chosen = || self.contenders[*n].drawing_at(frame).map(|near| paths[*n][near]);
-            let Some(choice) = replaced.or_else(chosen) else { continue };
-            if let Some(mask) = self.shadows.mask((c, *n), (d, h), choice) {
+        for &n in self.shadows.in_front_of(c) {
+            let Some(near) = self.contenders[n].drawing_at(frame) else { continue };
+            if let Some(mask) = self.shadows.mask((c, n), (d, h), paths[n][near]) {
                 hidden.iter_mut().zip(mask).for_each(|(all, one)| *all |= one);
             }
         }
         self.shadows.cost(c, (d, h), &hidden)
     }
 
-    /// Cost of the fit of all contenders behind `c` if `c` is in the state given. The contender `but` is left out.
-    pub fn look_behind(&self, c: usize, (d, h): State, paths: &Paths, but: Option<usize>) -> f64 {
-        let mut sum = 0.0;
-        for &far in self.shadows.behind(c).iter().filter(|&&far| Some(far) != but) {
-            for e in 0..self.contenders[far].drawings.len() {
-                if self.contenders[c].drawing_at(self.contenders[far].frame_of(e)) == Some(d) {
-                    sum += self.look(far, (e, paths[far][e]), paths, Some((c, h)));
-                }
-            }
-        }
-        sum
-    }
-
-    /// Cost of the joints and companions of `c` if `c` is in the state given. Those with the contender `but` are left out.
-    pub fn joints(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
-        let present = |other: usize| {
-            let near = self.meeting(c, state.0, other).filter(|_| Some(other) != but)?;
-            Some((other, (near, paths[other][near])))
-        };
-        let hinge = |tie: &Tie| Some(self.joint(tie, (c, state), present(tie.other(c)?.0)?));
-        let pairs = self.companions.pairs.iter().enumerate();
-        let pair = |(k, pair): (usize, &Pair)| Some(self.together(k, (c, state), present(pair.other(c)?)?));
-        self.ties.iter().filter_map(hinge).sum::<f64>() + pairs.filter_map(pair).sum::<f64>()
-    }
-
     /// The drawing of contender `b` that is joined to drawing `d` of contender `a`. A key within the other part's span ends one
     /// span and begins the next; it counts with the one that it ends.
-    fn meeting(&self, a: usize, d: usize, b: usize) -> Option<usize> {
+    pub(super) fn meeting(&self, a: usize, d: usize, b: usize) -> Option<usize> {
         let (own, other) = (&self.contenders[a], &self.contenders[b]);
         let near = other.drawing_at(own.frame_of(d))?;
         let begins = |drawing: usize, span: Span, outer: Span| drawing == 0 && span.first > outer.first;
@@ -89,22 +65,19 @@ impl Scene<'_> {
     }
 
     /// Cost of the pair of companions with an index in their states, given in either order.
-    fn together(&self, index: usize, a: (usize, State), b: (usize, State)) -> f64 {
+    pub(super) fn together(&self, index: usize, a: (usize, State), b: (usize, State)) -> f64 {
         let [part, body] = if self.companions.pairs[index].parts[0] == a.0 { [a.1, b.1] } else { [b.1, a.1] };
         self.companions.cost(index, part, body)
-    }
-
-    /// Cost of all joints and companions between two contenders in their states.
-    pub fn bond(&self, a: (usize, State), b: (usize, State)) -> f64 {
-        let joined = |tie: &&Tie| tie.other(a.0).is_some_and(|(other, _)| other == b.0);
-        let ties = self.ties.iter().filter(joined).map(|tie| self.joint(tie, a, b)).sum::<f64>();
-        let pairs = self.companions.pairs.iter().enumerate().filter(|(_, pair)| pair.other(a.0) == Some(b.0));
-        ties + pairs.map(|(k, _)| self.together(k, a, b)).sum::<f64>()
     }
 
     /// The cost of motion of a contender.
     pub fn smoothness(&self, c: usize) -> Smoothness {
         Smoothness::among_jumps(self.contenders[c].models[0].texture.mesh.size, self.jump)
+    }
+
+    /// The cost of motion between the hypotheses of a contender.
+    pub fn moving(&self, c: usize) -> Moving<'_> {
+        Moving { lengths: &self.lengths[c], smoothness: self.smoothness(c) }
     }
 
     /// The part of the joint energy that depends on the choices of the contenders in `who`.
@@ -115,7 +88,7 @@ impl Scene<'_> {
         seen.dedup();
         let looks = |&c: &usize| {
             let states = paths[c].iter().copied().enumerate();
-            states.map(|state| self.look(c, state, paths, None)).sum::<f64>()
+            states.map(|state| self.look(c, state, paths)).sum::<f64>()
         };
         let smooth = |&c: &usize| {
             let pools = paths[c].iter().zip(&**self.contenders[c].pools);

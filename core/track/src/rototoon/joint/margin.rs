@@ -40,10 +40,9 @@ fn of_contender(scene: &Scene, c: usize, paths: &Paths) -> Vec<f64> {
     let pools = scene.contenders[c].pools;
     let candidates: Vec<Vec<Candidate>> = (0..pools.len())
         .map(|d| {
-            let rest = scene.rest((&[c], d), paths);
-            let cost = |h: usize| scene.alone(c, (d, h), paths, None) + scene.unexplained(&rest, &[(c, (d, h))]);
-            let of = |h: usize| Candidate { cost: cost(h), points: &pools[d][h].points };
-            std::iter::once(paths[c][d]).chain(elsewhere(scene, c, d, paths[c][d])).map(of).collect()
+            let own = paths[c][d];
+            let states: Vec<usize> = std::iter::once(own).chain(elsewhere(scene, c, d, own)).collect();
+            scene.candidates((c, d), &states, paths)
         })
         .collect();
     let smoothness = scene.smoothness(c);

@@ -22,10 +22,13 @@ pub mod cost;
 pub mod figure;
 pub mod jumps;
 pub mod lead;
+pub mod lengths;
 pub mod margin;
+mod masks;
 mod moves;
 pub mod pairs;
 pub mod shadow;
+mod tables;
 #[cfg(test)]
 mod tests;
 pub mod tie;
@@ -36,6 +39,7 @@ use companion::{Companions, Pair};
 use figure::Figure;
 use figure::canvas::Canvas;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
+use moves::{Changes, Move, Proposal, Table};
 use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -73,7 +77,8 @@ pub fn choose(
     }
     let companions = Companions::new(contenders, &bonds.companions);
     let (ties, figure) = (&bonds.ties[..], figure.as_ref());
-    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, figure };
+    let lengths = &memory.lengths(contenders);
+    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, lengths, figure };
     let pairs = shadows.pairs();
     let same = |a: usize, b: usize| {
         contenders[a].drawings == contenders[b].drawings && contenders[a].span == contenders[b].span
@@ -82,8 +87,8 @@ pub fn choose(
         .map(|c| vec![c])
         .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]))
         .filter(|who| who.iter().all(|&c| free[c]));
-    let mut moves: Vec<Move> = moves.map(|who| Move { seen: scene.seen_by(&who), who, tried: None }).collect();
-    let mut changed = Changes { count: 0, last: vec![0; contenders.len()] };
+    let mut moves: Vec<Move> = moves.map(|who| Move::new(&scene, who)).collect();
+    let mut changed = Changes::none(&paths);
     for _ in 0..ROUNDS {
         let before = changed.count;
         round(&scene, &mut moves, &mut paths, &mut changed);
@@ -107,7 +112,8 @@ pub fn margins(
     let companions = Companions::new(contenders, &bonds.companions);
     let figure = bonds.canvas.as_ref().map(|canvas| Figure::new(canvas, contenders, memory));
     let (ties, figure) = (&bonds.ties[..], figure.as_ref());
-    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, figure };
+    let lengths = &memory.lengths(contenders);
+    let scene = cost::Scene { contenders, shadows: &shadows, ties, companions: &companions, jump, lengths, figure };
     margin::margins(&scene, paths, free)
 }
 
@@ -119,8 +125,12 @@ fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], chan
         let due = |&m: &usize| moves[m].tried.is_none_or(|tried| changed.seen(&moves[m], tried));
         let few: Vec<usize> = (next..moves.len()).filter(due).take(AT_ONCE).collect();
         let Some(last) = few.last() else { return };
-        let found = few.par_iter().map(|&m| (m, scene.proposal(&moves[m].who, paths)));
-        let mut found: BTreeMap<usize, _> = found.collect();
+        let found: Vec<_> = few.par_iter().map(|&m| (m, scene.proposal(&moves[m], paths, changed))).collect();
+        let keep = |(m, (proposal, tables)): (usize, (Option<Proposal>, Vec<Table>))| {
+            moves[m].tables = tables;
+            (m, proposal)
+        };
+        let mut found: BTreeMap<usize, Option<Proposal>> = found.into_iter().map(keep).collect();
         let (start, end) = (changed.count, last + 1);
         let stale = (next..end).find(|&m| {
             let stale = changed.seen(&moves[m], start);
@@ -132,35 +142,4 @@ fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], chan
         });
         next = stale.unwrap_or(end);
     }
-}
-
-/// When each contender's path last changed, as a count of changes.
-struct Changes {
-    count: usize,
-    last: Vec<usize>,
-}
-
-impl Changes {
-    /// Whether a path that a move depends on has changed after the change number `since`. If not, the move would give
-    /// the same result again.
-    fn seen(&self, by: &Move, since: usize) -> bool {
-        by.seen.iter().any(|&c| self.last[c] > since)
-    }
-
-    fn make(&mut self, new: Vec<(usize, Vec<usize>)>, paths: &mut [Vec<usize>]) {
-        self.count += 1;
-        for (c, path) in new {
-            paths[c] = path;
-            self.last[c] = self.count;
-        }
-    }
-}
-
-/// A move: new paths for one contender or for two.
-struct Move {
-    who: Vec<usize>,
-    /// The contenders whose choices the result depends on, with those of the move itself.
-    seen: Vec<usize>,
-    /// The number of changes when the move was last tried.
-    tried: Option<usize>,
 }

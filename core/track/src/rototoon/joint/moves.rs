@@ -6,25 +6,129 @@
 
 use super::contender::{Paths, State};
 use super::cost::Scene;
+use super::lengths::Among;
 use super::pairs::{PairProblem, best_pair};
 use super::tie::overlap;
-use crate::rototoon::select::{Candidate, best_path};
+use crate::rototoon::select::{Candidate, path_of_least_cost};
 
 /// Hypotheses per part and drawing that a move of two parts considers.
 const STATES: usize = 6;
 /// Smaller gains are rounding errors.
 const LEAST_GAIN: f64 = 1e-9;
 
+/// A move: new paths for one contender or for two.
+pub struct Move {
+    /// The contenders: one, or a far and a near one with the same drawings.
+    pub who: Vec<usize>,
+    /// The contenders whose choices the result depends on, with those of the move itself.
+    pub seen: Vec<usize>,
+    /// The number of changes when the move was last tried.
+    pub tried: Option<usize>,
+    /// By drawing: the costs that were found last.
+    pub tables: Vec<Table>,
+}
+
+/// What a move costs on a drawing.
+#[derive(Clone)]
+pub struct Table {
+    /// The number of changes when it was found.
+    at: usize,
+    /// By contender of the move: the hypotheses.
+    states: Vec<Vec<usize>>,
+    /// Cost of each hypothesis, or of each pair of them. The second contender's one is the inner index.
+    costs: Vec<f64>,
+}
+
+/// New paths of contenders.
+pub type Proposal = Vec<(usize, Vec<usize>)>;
+
+/// When each contender's choice last changed on each drawing, as a count of changes.
+pub struct Changes {
+    /// The number of changes.
+    pub count: usize,
+    last: Vec<Vec<usize>>,
+}
+
+impl Changes {
+    /// No changes yet of these paths.
+    pub fn none(paths: &Paths) -> Self {
+        Self { count: 0, last: paths.iter().map(|path| vec![0; path.len()]).collect() }
+    }
+
+    /// Whether a path that a move depends on has changed after the change number `since`. If not, the move would give
+    /// the same result again.
+    pub fn seen(&self, by: &Move, since: usize) -> bool {
+        by.seen.iter().any(|&c| self.last[c].iter().any(|last| *last > since))
+    }
+
+    /// Changes the paths by a proposal.
+    pub fn make(&mut self, new: Proposal, paths: &mut [Vec<usize>]) {
+        self.count += 1;
+        for (c, path) in new {
+            let changed = self.last[c].iter_mut().zip(path.iter().zip(&paths[c])).filter(|(_, (new, old))| new != old);
+            changed.for_each(|(last, _)| *last = self.count);
+            paths[c] = path;
+        }
+    }
+}
+
+impl Move {
+    /// A move of these contenders that was not tried yet.
+    pub fn new(scene: &Scene, who: Vec<usize>) -> Self {
+        Self { seen: scene.seen_by(&who), who, tried: None, tables: Vec::new() }
+    }
+}
+
 impl Scene<'_> {
-    /// New paths of one contender, or of a far and a near one with the same drawings, while the others are fixed. None
-    /// if they do not lower the energy.
-    pub fn proposal(&self, who: &[usize], paths: &Paths) -> Option<Vec<(usize, Vec<usize>)>> {
-        let new = match *who {
-            [c] => self.single(c, paths),
-            [far, near] => self.pair(far, near, paths),
-            _ => return None,
+    /// What a move gives while the other contenders are fixed: new paths (none if they do not lower the energy), and the costs
+    /// by drawing.
+    pub fn proposal(&self, of: &Move, paths: &Paths, changes: &Changes) -> (Option<Proposal>, Vec<Table>) {
+        let table = |d: usize| {
+            let states: Vec<Vec<usize>> = of.who.iter().map(|&c| self.states(of.who.len(), c, d, paths)).collect();
+            let known = of.tables.get(d).filter(|known| known.states == states && !self.differs(of, (d, known.at), changes));
+            known.cloned().unwrap_or_else(|| {
+                let costs = match of.who[..] {
+                    [c] => self.costs((c, d), &states[0], paths),
+                    [far, near] => self.pair_costs([far, near], d, &states, paths),
+                    _ => Vec::new(),
+                };
+                Table { at: changes.count, states, costs }
+            })
         };
-        self.gains(&new, paths).then_some(new)
+        let tables: Vec<Table> = (0..self.contenders[of.who[0]].pools.len()).map(table).collect();
+        let new = self.best(&of.who, &tables);
+        (self.gains(&new, paths).then_some(new), tables)
+    }
+
+    /// Whether the choice of another contender that a move depends on has changed on drawing `d` after the change `since`.
+    fn differs(&self, of: &Move, (d, since): (usize, usize), changes: &Changes) -> bool {
+        let own = &self.contenders[of.who[0]];
+        let others = of.seen.iter().filter(|c| !of.who.contains(c));
+        others.into_iter().any(|&c| {
+            let shown = self.contenders[c].shown_during(own, d);
+            shown.is_some_and(|shown| changes.last[c][shown].iter().any(|last| *last > since))
+        })
+    }
+
+    /// The paths of least cost by the costs on each drawing.
+    fn best(&self, who: &[usize], tables: &[Table]) -> Proposal {
+        let costs: Vec<Vec<f64>> = tables.iter().map(|table| table.costs.clone()).collect();
+        let states: Vec<Vec<Vec<usize>>> =
+            (0..who.len()).map(|k| tables.iter().map(|table| table.states[k].clone()).collect()).collect();
+        let path = |which: usize, places: &mut dyn Iterator<Item = usize>| {
+            (who[which], places.enumerate().map(|(d, place)| states[which][d][place]).collect())
+        };
+        let motion = |which: usize| Among { moving: self.moving(who[which]), states: &states[which] };
+        match who.len() {
+            1 => vec![path(0, &mut path_of_least_cost(&costs, &motion(0)).into_iter())],
+            2 => {
+                let counts = [0, 1].map(|which: usize| states[which].iter().map(Vec::len).collect());
+                let best = best_pair(&PairProblem { costs, counts, motion: [0, 1].map(motion) });
+                let of = |which: usize| path(which, &mut best.iter().map(|pair| pair[which]));
+                vec![of(0), of(1)]
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// The contenders whose choices a move of `who` depends on: the contenders that hide them, that they hide, that
@@ -51,71 +155,49 @@ impl Scene<'_> {
         seen
     }
 
-    /// The best path of one contender while the others are fixed.
-    fn single(&self, c: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
-        let pools = self.contenders[c].pools;
-        let candidates: Vec<Vec<Candidate>> = (0..pools.len())
-            .map(|d| {
-                let rest = self.rest((&[c], d), paths);
-                let cost = |h: usize| self.alone(c, (d, h), paths, None) + self.unexplained(&rest, &[(c, (d, h))]);
-                let of = |h: usize| Candidate { cost: cost(h), points: &pools[d][h].points };
-                (0..pools[d].len()).map(of).collect()
-            })
-            .collect();
-        vec![(c, best_path(&candidates, self.smoothness(c)))]
+    /// Costs of states of a contender on a drawing while the others are fixed.
+    fn costs(&self, (c, d): State, states: &[usize], paths: &Paths) -> Vec<f64> {
+        let rest = self.rest((&[c], d), paths);
+        let alone = self.alone((c, d), states, paths, None);
+        states.iter().zip(alone).map(|(&h, alone)| alone + self.unexplained(&rest, &[(c, (d, h))])).collect()
     }
 
-    /// The best paths of a far and a near contender with the same drawings while the others are fixed.
-    fn pair(&self, far: usize, near: usize, paths: &Paths) -> Vec<(usize, Vec<usize>)> {
-        let drawings = self.contenders[far].pools.len();
-        let states = |c: usize| -> Vec<Vec<usize>> { (0..drawings).map(|d| self.states(c, d, paths)).collect() };
-        let states = [states(far), states(near)];
-        let costs = (0..drawings).map(|d| self.pair_costs([far, near], d, &states, paths)).collect();
-        let points = [far, near].map(|c| self.contenders[c].pools);
-        let problem = PairProblem {
-            costs,
-            points: std::array::from_fn(|which| {
-                let of = |(d, states): (usize, &Vec<usize>)| {
-                    states.iter().map(|&h| &points[which][d][h].points[..]).collect()
-                };
-                states[which].iter().enumerate().map(of).collect()
-            }),
-            smoothness: [self.smoothness(far), self.smoothness(near)],
-        };
-        let best = best_pair(&problem);
-        let path = |which: usize| best.iter().enumerate().map(|(d, pair)| states[which][d][pair[which]]).collect();
-        vec![(far, path(0)), (near, path(1))]
+    /// States of a contender on a drawing with their costs while the others are fixed.
+    pub fn candidates(&self, (c, d): State, states: &[usize], paths: &Paths) -> Vec<Candidate<'_>> {
+        let points = |h: usize| &self.contenders[c].pools[d][h].points[..];
+        let costs = self.costs((c, d), states, paths).into_iter();
+        states.iter().zip(costs).map(|(&h, cost)| Candidate { cost, points: points(h) }).collect()
     }
 
     /// Costs of all pairs of states of a far and a near contender on a drawing. The near one's state is the inner
     /// index.
-    fn pair_costs(&self, [far, near]: [usize; 2], d: usize, states: &[Vec<Vec<usize>>; 2], paths: &Paths) -> Vec<f64> {
+    fn pair_costs(&self, [far, near]: [usize; 2], d: usize, states: &[Vec<usize>], paths: &Paths) -> Vec<f64> {
+        let [of_far, of_near] = [&states[0][..], &states[1]];
         // The samples of the far one that are hidden depend on the pair, so its own fit is added in the table below.
-        let far_alone =
-            |&f: &usize| self.look_behind(far, (d, f), paths, Some(near)) + self.joints(far, (d, f), paths, Some(near));
-        let far_costs: Vec<f64> = states[0][d].iter().map(far_alone).collect();
-        let near_costs: Vec<f64> = states[1][d].iter().map(|&n| self.alone(near, (d, n), paths, Some(far))).collect();
+        let behind = self.looks_behind((far, d), of_far, paths, Some(near));
+        let bonds = self.bonds_of((far, d), of_far, paths, Some(near));
+        let near_costs = self.alone((near, d), of_near, paths, Some(far));
+        let looks = self.looks_beneath((far, d), of_far, (near, of_near), paths);
+        let torn = self.bonds_between((far, d), of_far, (near, d), of_near);
         let rest = self.rest((&[far, near], d), paths);
-        let mut table = Vec::new();
-        for (&f, far_cost) in states[0][d].iter().zip(&far_costs) {
-            for (&n, near_cost) in states[1][d].iter().zip(&near_costs) {
-                let look = self.look(far, (d, f), paths, Some((near, n)));
-                let torn = self.bond((far, (d, f)), (near, (d, n)));
+        let mut table = Vec::with_capacity(looks.len());
+        for (i, &f) in of_far.iter().enumerate() {
+            for (j, &n) in of_near.iter().enumerate() {
+                let k = i * of_near.len() + j;
                 let unexplained = self.unexplained(&rest, &[(far, (d, f)), (near, (d, n))]);
-                table.push(look + torn + unexplained + far_cost + near_cost);
+                table.push(looks[k] + torn[k] + unexplained + (behind[i] + bonds[i]) + near_costs[j]);
             }
         }
         table
     }
 
-    /// Cost of a state without motion and without what it leaves unexplained. The contender `but` does not count.
-    pub fn alone(&self, c: usize, state: State, paths: &Paths, but: Option<usize>) -> f64 {
-        self.look(c, state, paths, None) + self.look_behind(c, state, paths, but) + self.joints(c, state, paths, but)
-    }
-
-    /// The hypotheses of a drawing that a move of two parts considers: those of least energy and the present one.
-    fn states(&self, c: usize, d: usize, paths: &Paths) -> Vec<usize> {
+    /// The hypotheses of a drawing that a move of so many parts considers: all for one part, and else those of least energy and
+    /// the present one.
+    fn states(&self, parts: usize, c: usize, d: usize, paths: &Paths) -> Vec<usize> {
         let pool = &self.contenders[c].pools[d];
+        if parts == 1 {
+            return (0..pool.len()).collect();
+        }
         let mut order: Vec<usize> = (0..pool.len()).filter(|&h| h != paths[c][d]).collect();
         order.sort_by(|&a, &b| pool[a].pose.energy.total_cmp(&pool[b].pose.energy));
         order.truncate(STATES - 1);

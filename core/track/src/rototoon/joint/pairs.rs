@@ -6,41 +6,40 @@
 //!
 //! Source: our own; the path search for a single part is in `select`.
 
-use crate::rototoon::select::{Smoothness, trace_back};
-use rototoon_base::geometry::Point;
+use crate::rototoon::select::{Motion, trace_back};
 
-/// Two parts with some states on each drawing. Places are in working pixels.
-pub struct PairProblem<'a> {
+/// Two parts with some states on each drawing.
+pub struct PairProblem<M> {
     /// By drawing: costs of all pairs of states. The second part's state is the inner index.
     pub costs: Vec<Vec<f64>>,
-    /// By part, drawing and state: the control points.
-    pub points: [Vec<Vec<&'a [Point]>>; 2],
+    /// By part and drawing: the number of states.
+    pub counts: [Vec<usize>; 2],
     /// By part: the cost of motion.
-    pub smoothness: [Smoothness; 2],
+    pub motion: [M; 2],
 }
 
 /// Motion costs of one part between its states on neighbouring drawings. The last drawing's state is the inner index.
-struct Motion {
+struct Table {
     counts: [usize; 3],
     speed: Vec<f64>,
     acceleration: Vec<f64>,
 }
 
-impl Motion {
+impl Table {
     /// Costs of the motion to drawing `d` from the two drawings before it, or from one if `d` is 1.
-    fn new(problem: &PairProblem, part: usize, d: usize) -> Self {
-        let (points, smoothness) = (&problem.points[part], problem.smoothness[part]);
+    fn new<M: Motion>(problem: &PairProblem<M>, part: usize, d: usize) -> Self {
+        let (counts, motion) = (&problem.counts[part], &problem.motion[part]);
+        let counts = [if d >= 2 { counts[d - 2] } else { 0 }, counts[d - 1], counts[d]];
         let (mut speed, mut acceleration) = (Vec::new(), Vec::new());
-        for g in &points[d - 1] {
-            speed.extend(points[d].iter().map(|h| smoothness.speed(g, h)));
+        for g in 0..counts[1] {
+            speed.extend((0..counts[2]).map(|h| motion.speed(d, [g, h])));
         }
-        let first: &[&[Point]] = if d >= 2 { &points[d - 2] } else { &[] };
-        for f in first {
-            for g in &points[d - 1] {
-                acceleration.extend(points[d].iter().map(|h| smoothness.acceleration(f, g, h)));
+        for f in 0..counts[0] {
+            for g in 0..counts[1] {
+                acceleration.extend((0..counts[2]).map(|h| motion.acceleration(d, [f, g, h])));
             }
         }
-        Self { counts: [first.len(), points[d - 1].len(), points[d].len()], speed, acceleration }
+        Self { counts, speed, acceleration }
     }
 
     fn speed(&self, g: usize, h: usize) -> f64 {
@@ -63,9 +62,9 @@ struct Arrivals {
 }
 
 impl Arrivals {
-    fn new(problem: &PairProblem, d: usize, g: usize, least: &[Vec<f64>], motion: &[Motion; 2]) -> Self {
-        let (inner, targets) = (problem.points[1][d - 2].len(), problem.points[0][d].len());
-        let g0 = g / problem.points[1][d - 1].len();
+    fn new<M>(problem: &PairProblem<M>, d: usize, g: usize, least: &[Vec<f64>], motion: &[Table; 2]) -> Self {
+        let (inner, targets) = (problem.counts[1][d - 2], problem.counts[0][d]);
+        let g0 = g / problem.counts[1][d - 1];
         let mut table = vec![(f64::INFINITY, 0); inner * targets];
         for (f, costs) in least.iter().enumerate() {
             let (f0, f1) = (f / inner, f % inner);
@@ -80,7 +79,7 @@ impl Arrivals {
     }
 
     /// Least cost of arriving at a pair of states, and the pair two drawings before.
-    fn least(&self, motion: &[Motion; 2], [_, g1]: [usize; 2], [h0, h1]: [usize; 2]) -> (f64, usize) {
+    fn least(&self, motion: &[Table; 2], [_, g1]: [usize; 2], [h0, h1]: [usize; 2]) -> (f64, usize) {
         let mut best = (f64::INFINITY, 0);
         for f1 in 0..self.inner {
             let (before, f0) = self.table[f1 * self.targets + h0];
@@ -94,9 +93,9 @@ impl Arrivals {
 }
 
 /// The states of both parts on each drawing, along their paths of least total cost.
-pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
+pub fn best_pair<M: Motion>(problem: &PairProblem<M>) -> Vec<[usize; 2]> {
     let split = |d: usize, pair: usize| {
-        let inner = problem.points[1][d].len();
+        let inner = problem.counts[1][d];
         [pair / inner, pair % inner]
     };
     let count = |d: usize| problem.costs[d].len();
@@ -104,8 +103,8 @@ pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
         let least = |d: usize| (0..count(d)).min_by(|&a, &b| problem.costs[d][a].total_cmp(&problem.costs[d][b]));
         return (0..problem.costs.len()).filter_map(|d| Some(split(d, least(d)?))).collect();
     }
-    let mut motion = [0, 1].map(|part: usize| Motion::new(problem, part, 1));
-    let step = |motion: &[Motion; 2], d: usize, g: usize, h: usize| {
+    let mut motion = [0, 1].map(|part: usize| Table::new(problem, part, 1));
+    let step = |motion: &[Table; 2], d: usize, g: usize, h: usize| {
         let (from, to) = (split(d - 1, g), split(d, h));
         problem.costs[d][h] + motion[0].speed(from[0], to[0]) + motion[1].speed(from[1], to[1])
     };
@@ -114,7 +113,7 @@ pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
         (0..count(0)).map(|g| (0..count(1)).map(|h| problem.costs[0][g] + step(&motion, 1, g, h)).collect()).collect();
     let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
     for d in 2..problem.costs.len() {
-        motion = [0, 1].map(|part: usize| Motion::new(problem, part, d));
+        motion = [0, 1].map(|part: usize| Table::new(problem, part, d));
         let mut next = vec![vec![f64::INFINITY; count(d)]; count(d - 1)];
         let mut from = vec![vec![0; count(d)]; count(d - 1)];
         for g in 0..count(d - 1) {
@@ -133,22 +132,24 @@ pub fn best_pair(problem: &PairProblem) -> Vec<[usize; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rototoon::select::{Candidate, Direct, Smoothness};
     use proptest::prelude::*;
+    use rototoon_base::geometry::Point;
 
     type Pool = Vec<(f64, f64)>;
 
     /// Cost of one pair of paths, added up term by term.
-    fn cost_of(way: &[[usize; 2]], problem: &PairProblem) -> f64 {
+    fn cost_of(way: &[[usize; 2]], problem: &PairProblem<Direct>) -> f64 {
         let mut cost = 0.0;
         for (d, pair) in way.iter().enumerate() {
-            cost += problem.costs[d][pair[0] * problem.points[1][d].len() + pair[1]];
+            cost += problem.costs[d][pair[0] * problem.counts[1][d] + pair[1]];
             for part in 0..2 {
-                let at = |d: usize| problem.points[part][d][way[d][part]];
+                let at = |d: usize| way[d][part];
                 if d >= 1 {
-                    cost += problem.smoothness[part].speed(at(d - 1), at(d));
+                    cost += problem.motion[part].speed(d, [at(d - 1), at(d)]);
                 }
                 if d >= 2 {
-                    cost += problem.smoothness[part].acceleration(at(d - 2), at(d - 1), at(d));
+                    cost += problem.motion[part].acceleration(d, [at(d - 2), at(d - 1), at(d)]);
                 }
             }
         }
@@ -165,12 +166,17 @@ mod tests {
         ) {
             let points = |pool: &Pool| -> Vec<Point> { pool.iter().map(|&(x, y)| Point::new(x, y)).collect() };
             let places: Vec<[Vec<Point>; 2]> = pools.iter().map(|(a, b, _)| [points(a), points(b)]).collect();
-            let of = |part: usize| -> Vec<Vec<&[Point]>> {
-                places.iter().map(|p| p[part].iter().map(std::slice::from_ref).collect()).collect()
+            let of = |part: usize| -> Vec<Vec<Candidate>> {
+                let candidate = |p| Candidate { cost: 0.0, points: std::slice::from_ref(p) };
+                places.iter().map(|p| p[part].iter().map(candidate).collect()).collect()
             };
             let costs = pools.iter().map(|(a, b, c)| c[..a.len() * b.len()].to_vec()).collect();
-            let smoothness = [Smoothness::new(30.0), Smoothness::new(70.0)];
-            let problem = PairProblem { costs, points: [of(0), of(1)], smoothness };
+            let candidates = [of(0), of(1)];
+            let motion = [(0, 30.0), (1, 70.0)].map(|(part, size)| {
+                Direct { candidates: &candidates[part], smoothness: Smoothness::new(size) }
+            });
+            let counts = [0, 1].map(|part: usize| candidates[part].iter().map(Vec::len).collect());
+            let problem = PairProblem { costs, counts, motion };
             let best = best_pair(&problem);
             let mut ways: Vec<Vec<[usize; 2]>> = vec![Vec::new()];
             for (a, b, _) in &pools {

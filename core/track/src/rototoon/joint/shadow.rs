@@ -8,12 +8,14 @@
 
 use super::contender::{Contender, State};
 use super::figure::covered::{Covered, covered};
+use super::lengths::Lengths;
+use super::masks::Masks;
 use crate::rototoon::lattice::texture::UNSEEN;
 use crate::rototoon::pool::{Hypothesis, Pools};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::Raster;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Cost of a sample that a nearer part hides, as a squared colour difference.
@@ -22,18 +24,16 @@ pub const HIDDEN: f32 = UNSEEN;
 /// Side of the pixels in which shadows are drawn, in working pixels.
 const PIXEL: f64 = 3.0;
 
-/// Samples of a hypothesis that a nearer hypothesis hides, one bit per sample. `None` if it hides no sample.
-pub type Mask = Option<Box<[u64]>>;
-
-/// Masks of one far and one near contender, by the far one's drawing, its hypothesis, and the near one's hypothesis.
-type Masks = Vec<Vec<Vec<Mask>>>;
+/// Masks of one far and one near contender, by the far one's drawing.
+type PairMasks = Vec<Masks>;
 
 /// Sample costs of a contender's hypotheses, by drawing and hypothesis.
 type Costs = Vec<Vec<SampleCosts>>;
 
 /// Hidden samples of all pairs of contenders, with the costs of the samples.
 pub struct Shadows {
-    masks: BTreeMap<(usize, usize), Arc<Masks>>,
+    /// By the far contender, then the near one.
+    masks: Vec<Vec<Option<Arc<PairMasks>>>>,
     costs: Vec<Arc<Costs>>,
     in_front: Vec<Vec<usize>>,
     behind: Vec<Vec<usize>>,
@@ -77,7 +77,7 @@ impl Silhouette {
             && self.pixels.row(at.y as usize)[at.x as usize]
     }
 
-    fn mask(&self, places: &[Point], (low, high): (Point, Point)) -> Mask {
+    fn mask(&self, places: &[Point], (low, high): (Point, Point)) -> Option<Vec<u64>> {
         let extent = Point::new(self.pixels.width() as f64, self.pixels.height() as f64);
         let (own_low, own_high) = (self.corner * PIXEL, (self.corner + extent) * PIXEL);
         if high.x < own_low.x || high.y < own_low.y || low.x > own_high.x || low.y > own_high.y {
@@ -87,51 +87,57 @@ impl Silhouette {
         for (i, &p) in places.iter().enumerate() {
             words[i / 64] |= u64::from(self.covers(p)) << (i % 64);
         }
-        words.iter().any(|&w| w != 0).then(|| words.into_boxed_slice())
+        words.iter().any(|&w| w != 0).then_some(words)
     }
-}
-
-/// Shadows of the last call. Shadows between pools that are still the same need not be computed again.
-#[derive(Default)]
-pub struct Memory {
-    before: Casts,
-    now: Casts,
 }
 
 /// Computed shadows by the addresses of the pools. The pools are kept too, so that no other pool can get the same
 /// address.
 #[derive(Default)]
-struct Casts {
+pub struct Memory {
     masks: BTreeMap<(usize, usize), PairCast>,
     costs: BTreeMap<usize, (Arc<Pools>, Arc<Costs>)>,
     covered: BTreeMap<usize, (Arc<Pools>, Arc<Covered>)>,
+    lengths: BTreeMap<usize, (Arc<Pools>, Arc<Lengths>)>,
 }
 
 /// A far and a near contender, and their masks. `None` if the near one hides no sample.
-type Fresh = ((usize, usize), Option<Arc<Masks>>);
+type Fresh = ((usize, usize), Option<Arc<PairMasks>>);
 
 /// The pools of a far and a near contender, and their masks. `None` if the near one hides no sample.
-type PairCast = ([Arc<Pools>; 2], Option<Arc<Masks>>);
+type PairCast = ([Arc<Pools>; 2], Option<Arc<PairMasks>>);
 
 impl Memory {
-    /// Forgets the shadows that were not used since the last call of this function.
-    pub fn turn(&mut self) {
-        self.before = std::mem::take(&mut self.now);
+    /// Forgets the shadows of other pools than these.
+    pub fn keep_only<'a>(&mut self, pools: impl Iterator<Item = &'a Arc<Pools>>) {
+        let present: BTreeSet<usize> = pools.map(address).collect();
+        self.masks.retain(|(far, near), _| present.contains(far) && present.contains(near));
+        self.costs.retain(|pools, _| present.contains(pools));
+        self.covered.retain(|pools, _| present.contains(pools));
+        self.lengths.retain(|pools, _| present.contains(pools));
+    }
+
+    /// The lengths of motion between the hypotheses of each contender.
+    pub fn lengths(&mut self, contenders: &[Contender]) -> Vec<Arc<Lengths>> {
+        let of = |c: &Contender| {
+            let new = || (c.pools.clone(), Arc::new(Lengths::new(c.pools)));
+            self.lengths.entry(address(c.pools)).or_insert_with(new).1.clone()
+        };
+        contenders.iter().map(of).collect()
     }
 
     /// The blocks inside the contour of each hypothesis of the contenders, in a picture of so many columns and rows of
     /// blocks. None for those that hide nothing.
     pub fn covered(&mut self, contenders: &[Contender], size: (usize, usize)) -> Vec<Option<Arc<Covered>>> {
         let known = |c: &Contender| {
-            let address = address(c.pools);
-            let known = self.now.covered.get(&address).or_else(|| self.before.covered.get(&address));
+            let known = self.covered.get(&address(c.pools));
             known.map_or_else(|| Arc::new(covered(c, size)), |(_, known)| known.clone())
         };
         let found: Vec<Option<Arc<Covered>>> =
             contenders.par_iter().with_max_len(1).map(|c| c.hides.then(|| known(c))).collect();
         for (c, covered) in contenders.iter().zip(&found) {
             let keep = |covered: &Arc<Covered>| (c.pools.clone(), covered.clone());
-            self.now.covered.extend(covered.as_ref().map(|covered| (address(c.pools), keep(covered))));
+            self.covered.extend(covered.as_ref().map(|covered| (address(c.pools), keep(covered))));
         }
         found
     }
@@ -151,9 +157,8 @@ impl Shadows {
             .flat_map(|&f| index.iter().map(move |&n| (f, n)))
             .filter(|&p| may_hide(contenders, p))
             .collect();
-        let known = &memory.before;
         let unknown: Vec<(usize, usize)> =
-            pairs.iter().copied().filter(|p| !known.masks.contains_key(&pair(p))).collect();
+            pairs.iter().copied().filter(|p| !memory.masks.contains_key(&pair(p))).collect();
         let silhouettes: Vec<Silhouettes> = index
             .par_iter()
             .with_max_len(1)
@@ -163,41 +168,44 @@ impl Shadows {
             index.par_iter().with_max_len(1).map(|&f| masks_on(contenders, &silhouettes, &unknown, f)).collect();
         let costs: Vec<Arc<Costs>> = contenders
             .par_iter()
-            .map(|c| known.costs.get(&address(c.pools)).map_or_else(|| Arc::new(sample_costs(c)), |(_, k)| k.clone()))
+            .map(|c| memory.costs.get(&address(c.pools)).map_or_else(|| Arc::new(sample_costs(c)), |(_, k)| k.clone()))
             .collect();
         let mut fresh: BTreeMap<_, _> = fresh.into_iter().flatten().collect();
-        let mut masks = BTreeMap::new();
+        let mut masks = vec![vec![None; contenders.len()]; contenders.len()];
         for parts in pairs {
-            let found = known.masks.get(&pair(&parts)).map(|(_, masks)| masks.clone());
+            let found = memory.masks.get(&pair(&parts)).map(|(_, masks)| masks.clone());
             let found = found.or_else(|| fresh.remove(&parts)).flatten();
             let pools = [parts.0, parts.1].map(|c| contenders[c].pools.clone());
-            memory.now.masks.insert(pair(&parts), (pools, found.clone()));
-            masks.extend(found.map(|found| (parts, found)));
+            memory.masks.insert(pair(&parts), (pools, found.clone()));
+            masks[parts.0][parts.1] = found;
         }
         for (c, costs) in contenders.iter().zip(&costs) {
-            memory.now.costs.insert(address(c.pools), (c.pools.clone(), costs.clone()));
+            memory.costs.insert(address(c.pools), (c.pools.clone(), costs.clone()));
         }
         let (mut in_front, mut behind) = (vec![Vec::new(); contenders.len()], vec![Vec::new(); contenders.len()]);
-        for &(far, near) in masks.keys() {
-            in_front[far].push(near);
-            behind[near].push(far);
+        for (far, by) in masks.iter().enumerate() {
+            for near in (0..by.len()).filter(|&near| by[near].is_some()) {
+                in_front[far].push(near);
+                behind[near].push(far);
+            }
         }
         Self { masks, costs, in_front, behind }
     }
 
     /// Whether no part hides another.
     pub fn none(&self) -> bool {
-        self.masks.is_empty()
+        self.masks.iter().flatten().all(Option::is_none)
     }
 
     /// The pairs (far, near) of contenders in which the near one hides some sample of the far one.
     pub fn pairs(&self) -> Vec<(usize, usize)> {
-        self.masks.keys().copied().collect()
+        let of = |far: usize| self.in_front[far].iter().map(move |&near| (far, near));
+        (0..self.in_front.len()).flat_map(of).collect()
     }
 
     /// The samples of a far hypothesis that a near hypothesis hides, as a bit mask. `parts` is (far, near).
     pub fn mask(&self, parts: (usize, usize), (drawing, hypothesis): State, near_hypothesis: usize) -> Option<&[u64]> {
-        self.masks.get(&parts)?[drawing][hypothesis].get(near_hypothesis)?.as_deref()
+        self.masks[parts.0][parts.1].as_ref()?[drawing].get(hypothesis, near_hypothesis)
     }
 
     /// The contenders that may hide one.
@@ -251,23 +259,24 @@ fn masks_on(contenders: &[Contender], silhouettes: &[Silhouettes], pairs: &[(usi
     if nearer.is_empty() {
         return Vec::new();
     }
-    let mut found: Vec<Masks> = nearer.iter().map(|_| Vec::new()).collect();
+    let mut found: Vec<PairMasks> = nearer.iter().map(|_| PairMasks::new()).collect();
     for (d, pool) in far.pools.iter().enumerate() {
-        found.iter_mut().for_each(|by| by.push(vec![Vec::new(); pool.len()]));
-        for (h, hypothesis) in pool.iter().enumerate() {
+        let near_drawings: Vec<Option<usize>> =
+            nearer.iter().map(|&n| contenders[n].drawing_at(far.frame_of(d))).collect();
+        for ((by, &n), near) in found.iter_mut().zip(&nearer).zip(&near_drawings) {
+            by.push(Masks::new(near.map_or(0, |near| silhouettes[n][near].len())));
+        }
+        for hypothesis in pool {
             let measured = far.models[hypothesis.model].texture.measured();
             let places: Vec<Point> = measured.iter().map(|t| t.binding.at(&hypothesis.pose.nodes)).collect();
-            let Some(bounds) = polygon::bounds(&places) else { continue };
-            for (by, &n) in found.iter_mut().zip(&nearer) {
-                let Some(near_drawing) = contenders[n].drawing_at(far.frame_of(d)) else { continue };
-                by[d][h] = silhouettes[n][near_drawing]
-                    .iter()
-                    .map(|s| s.as_ref().and_then(|s| s.mask(&places, bounds)))
-                    .collect();
+            let bounds = polygon::bounds(&places);
+            for ((by, &n), near) in found.iter_mut().zip(&nearer).zip(&near_drawings) {
+                let near = near.map_or(&[][..], |near| &silhouettes[n][near]);
+                by[d].push(places.len(), near.iter().map(|s| s.as_ref()?.mask(&places, bounds?)));
             }
         }
     }
-    let touching = |by: Masks| by.iter().flatten().flatten().any(Option::is_some).then(|| Arc::new(by));
+    let touching = |by: PairMasks| (!by.iter().all(Masks::is_empty)).then(|| Arc::new(by));
     nearer.into_iter().zip(found).map(|(n, by)| ((f, n), touching(by))).collect()
 }
 

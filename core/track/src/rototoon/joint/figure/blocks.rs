@@ -1,6 +1,7 @@
 //! Sets of blocks of a picture: one bit per block, in rows of words from a corner on.
 
 use rototoon_base::geometry::{Point, polygon};
+use std::ops::Range;
 
 /// Side of a block, in working pixels.
 pub const BLOCK: f64 = 4.0;
@@ -56,40 +57,63 @@ impl Blocks {
 
     /// Takes out the blocks of another set.
     pub fn remove(&mut self, other: &Self) {
-        self.meet(other, |own, theirs| *own &= !theirs);
+        let Some(both) = self.meet(other) else { return };
+        for row in both.rows.clone() {
+            let theirs = both.words_of(other, row);
+            let own = both.range(self, row);
+            self.bits[own].iter_mut().zip(theirs).for_each(|(own, theirs)| *own &= !theirs);
+        }
     }
 
     /// The number of blocks that are in both sets.
     pub fn shared(&self, other: &Self) -> usize {
-        self.common(other).count()
+        let Some(both) = self.meet(other) else { return 0 };
+        let of_row = |row: usize| {
+            let words = both.words_of(self, row).iter().zip(both.words_of(other, row));
+            words.map(|(a, b)| (a & b).count_ones() as usize).sum::<usize>()
+        };
+        both.rows.clone().map(of_row).sum()
     }
 
     /// The blocks that are in both sets.
     pub fn common(&self, other: &Self) -> Self {
         let mut common = Self { bits: vec![0; self.bits.len()], ..*self };
-        let mut own = self.clone();
-        own.remove(other);
-        common.bits.iter_mut().zip(self.bits.iter().zip(&own.bits)).for_each(|(to, (all, rest))| *to = all & !rest);
+        let Some(both) = self.meet(other) else { return common };
+        for row in both.rows.clone() {
+            let words = both.words_of(self, row).iter().zip(both.words_of(other, row));
+            let to = both.range(self, row);
+            common.bits[to].iter_mut().zip(words).for_each(|(to, (a, b))| *to = a & b);
+        }
         common
     }
 
-    /// Calls `change` with each word that the boxes of both sets contain.
-    fn meet(&mut self, other: &Self, change: impl Fn(&mut u64, u64)) {
+    /// The rows and words that the boxes of both sets contain.
+    fn meet(&self, other: &Self) -> Option<Both> {
         if self.words == 0 || other.words == 0 {
-            return;
+            return None;
         }
         let end = |set: &Self| set.row + set.bits.len() / set.words;
-        let first = self.word.max(other.word);
-        let last = (self.word + self.words).min(other.word + other.words);
-        if first >= last {
-            return;
-        }
-        for row in self.row.max(other.row)..end(self).min(end(other)) {
-            let own = (row - self.row) * self.words + first - self.word;
-            let theirs = (row - other.row) * other.words + first - other.word;
-            let (own, theirs) = (&mut self.bits[own..own + last - first], &other.bits[theirs..theirs + last - first]);
-            own.iter_mut().zip(theirs).for_each(|(own, &theirs)| change(own, theirs));
-        }
+        let words = self.word.max(other.word)..(self.word + self.words).min(other.word + other.words);
+        let rows = self.row.max(other.row)..end(self).min(end(other));
+        (!words.is_empty() && !rows.is_empty()).then_some(Both { rows, words })
+    }
+}
+
+/// What the boxes of two sets have in common: rows and words, counted in the picture.
+struct Both {
+    rows: Range<usize>,
+    words: Range<usize>,
+}
+
+impl Both {
+    /// Where the words of a row are in the bits of one of the sets.
+    fn range(&self, set: &Blocks, row: usize) -> Range<usize> {
+        let begin = (row - set.row) * set.words + self.words.start - set.word;
+        begin..begin + self.words.len()
+    }
+
+    fn words_of<'a>(&self, set: &'a Blocks, row: usize) -> &'a [u64] {
+        &set.bits[self.range(set, row)]
     }
 }
 

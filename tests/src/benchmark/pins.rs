@@ -1,0 +1,57 @@
+//! Times of tracking a film again after a pin.
+//!
+//! An artist pins one point and wants to see what becomes of it. On each part, in the middle of each of its spans, the control
+//! point that is farthest from its true place is pinned to it. Each pin is the only one: it is taken out before the next.
+//! Nothing else is edited, so the times are those of a tracker that knows the film.
+
+use super::run::{first, track};
+use crate::truth::Truth;
+use anyhow::Result;
+use rototoon::geometry::Point;
+use rototoon::scene::{FrameNumber, Scene};
+use rototoon::track::{TrackOptions, Tracker};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// A pin, and how long the track after it took.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pinned {
+    /// Name of the part.
+    pub part: String,
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Distance from the tracked place to the pin, in pixels.
+    pub moved: f64,
+    /// Seconds of the track.
+    pub seconds: f64,
+}
+
+/// Pins points of the set in `folder`, one after the other. Runs on the caller's rayon pool.
+pub fn pins(folder: &Path, options: TrackOptions) -> Result<Vec<Pinned>> {
+    let mut tracker = Tracker::new(options);
+    let (scene, pictures) = first(&mut tracker, folder)?;
+    let truth = Truth::load(&folder.join("truth.json"))?;
+    let mut found = Vec::new();
+    for (p, frame) in middles(&scene) {
+        let part = &scene.parts[p];
+        let (Some(tracked), Some(truth)) = (part.tracks.get(&frame), truth.parts[p].points.get(&frame)) else { continue };
+        let far = |k: &usize| tracked[*k].distance(truth[*k]);
+        let Some(index) = (0..truth.len()).max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
+        let mut pinned = scene.clone();
+        pinned.parts[p].pins.insert(frame, BTreeMap::<usize, Point>::from([(index, truth[index])]));
+        let seconds = track(&mut tracker, &mut pinned, &pictures)?;
+        found.push(Pinned { part: part.name.clone(), frame, moved: far(&index), seconds });
+    }
+    Ok(found)
+}
+
+/// The part and the frame of each pin: the middle of each span that has drawings between its keys.
+fn middles(scene: &Scene) -> Vec<(usize, FrameNumber)> {
+    let of_part = |p: usize| {
+        let keys: Vec<FrameNumber> = scene.parts[p].keys.keys().copied().collect();
+        let spans = keys.windows(2).filter(|keys| keys[1] - keys[0] > 1).map(|keys| keys[0].midpoint(keys[1]));
+        spans.map(|frame| (p, frame)).collect::<Vec<_>>()
+    };
+    (0..scene.parts.len()).flat_map(of_part).collect()
+}
