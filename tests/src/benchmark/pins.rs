@@ -1,17 +1,16 @@
 //! Times of tracking a film again after a pin.
 //!
 //! An artist pins one point and wants to see what becomes of it. On each part, in the middle of each of its spans, the control
-//! point that is farthest from its true place is pinned to it. Each pin is the only one: it is taken out before the next.
-//! Nothing else is edited, so the times are those of a tracker that knows the film.
+//! point that is farthest from its true place is pinned to it, and stays pinned. Nothing else is edited, so the times are those
+//! of a tracker that knows the film. What a tracker remembers must not change what it finds: on request each track is compared
+//! with that of a new tracker.
 
 use super::run::{first, track};
 use crate::truth::Truth;
-use anyhow::Result;
-use rototoon::geometry::Point;
+use anyhow::{Result, ensure};
 use rototoon::scene::{FrameNumber, Scene};
 use rototoon::track::{TrackOptions, Tracker};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A pin, and how long the track after it took.
@@ -28,20 +27,33 @@ pub struct Pinned {
 }
 
 /// Pins points of the set in `folder`, one after the other. Runs on the caller's rayon pool.
-pub fn pins(folder: &Path, options: TrackOptions) -> Result<Vec<Pinned>> {
+///
+/// Errors are those of reading and tracking the set. With `check` it is an error if a new tracker finds other tracks.
+pub fn pins(folder: &Path, options: TrackOptions, check: bool) -> Result<Vec<Pinned>> {
     let mut tracker = Tracker::new(options);
-    let (scene, pictures) = first(&mut tracker, folder)?;
+    let (mut scene, pictures) = first(&mut tracker, folder)?;
     let truth = Truth::load(&folder.join("truth.json"))?;
     let mut found = Vec::new();
     for (p, frame) in middles(&scene) {
         let part = &scene.parts[p];
-        let (Some(tracked), Some(truth)) = (part.tracks.get(&frame), truth.parts[p].points.get(&frame)) else { continue };
+        let (Some(tracked), Some(truth)) = (part.tracks.get(&frame), truth.parts[p].points.get(&frame)) else {
+            continue;
+        };
         let far = |k: &usize| tracked[*k].distance(truth[*k]);
         let Some(index) = (0..truth.len()).max_by(|a, b| far(a).total_cmp(&far(b))) else { continue };
-        let mut pinned = scene.clone();
-        pinned.parts[p].pins.insert(frame, BTreeMap::<usize, Point>::from([(index, truth[index])]));
-        let seconds = track(&mut tracker, &mut pinned, &pictures)?;
-        found.push(Pinned { part: part.name.clone(), frame, moved: far(&index), seconds });
+        let (moved, place) = (far(&index), truth[index]);
+        scene.parts[p].pins.entry(frame).or_default().insert(index, place);
+        let seconds = track(&mut tracker, &mut scene, &pictures)?;
+        if check {
+            let mut anew = scene.clone();
+            track(&mut Tracker::new(options), &mut anew, &pictures)?;
+            ensure!(
+                anew == scene,
+                "a new tracker finds other tracks with the pin of {:?} on frame {frame}",
+                scene.parts[p].name
+            );
+        }
+        found.push(Pinned { part: scene.parts[p].name.clone(), frame, moved, seconds });
     }
     Ok(found)
 }

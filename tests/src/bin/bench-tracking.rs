@@ -59,6 +59,9 @@ enum Command {
     Pins {
         /// Folder with project.json and truth.json.
         folder: PathBuf,
+        /// Compare each track with that of a new tracker.
+        #[arg(long)]
+        check: bool,
         /// Number of threads; 0 for one per core.
         #[arg(long, default_value_t = 0)]
         threads: usize,
@@ -90,8 +93,8 @@ fn main() -> Result<()> {
             pool(threads)?.install(|| run_set(&folder, &set, (options, &id), &out, no_edits))
         }
         Command::Time { folder, threads } => pool(threads)?.install(|| time(&folder)),
-        Command::Pins { folder, threads } => {
-            let found = pool(threads)?.install(|| pins::pins(&folder, TrackOptions::default()))?;
+        Command::Pins { folder, check, threads } => {
+            let found = pool(threads)?.install(|| pins::pins(&folder, TrackOptions::default(), check))?;
             println!("{}", serde_json::to_string_pretty(&found)?);
             Ok(())
         }

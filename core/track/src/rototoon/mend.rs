@@ -11,7 +11,7 @@
 use super::fold::{JOINTS, bases, folds};
 use super::joint::companion::Motions;
 use super::joint::figure::claims::{Claims, Unclaimed};
-use super::joint::lead::Lead;
+use super::joint::lead::{self, Lead};
 use super::lattice::limb::Joint;
 use super::lattice::mesh::Binding;
 use super::pool::{Hypothesis, Pools, add_new, choose, hypothesis, is_new, swept};
@@ -24,6 +24,7 @@ use crate::contract::error::TrackError;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::FrameNumber;
+use std::ptr;
 use std::sync::Arc;
 
 /// Step of the rotations tried about a joint, in degrees.
@@ -50,6 +51,8 @@ pub(super) struct Extended {
     swept: Vec<usize>,
     /// By drawing: the number with those that were looked for, but without those that were carried on from them.
     found: Vec<usize>,
+    /// By drawing: what was looked for, with what was known already.
+    looked: Vec<Arc<Vec<Hypothesis>>>,
 }
 
 impl Guide {
@@ -76,9 +79,40 @@ impl Guide {
         &self.path
     }
 
-    /// Whether all but the unclaimed figure is the same as in another guide.
-    pub fn differs_in_figure_only(&self, other: &Self) -> bool {
-        self.path == other.path && self.leads == other.leads
+    /// Whether another guide says the same about a drawing.
+    fn same_on(&self, other: &Self, d: usize) -> bool {
+        self.path[d] == other.path[d]
+            && self.unclaimed[d] == other.unclaimed[d]
+            && lead::same_on(&self.leads, &other.leads, d)
+    }
+}
+
+/// Pools that were extended before, and by what guide.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    pub source: &'a Pooled,
+    pub guide: &'a Guide,
+    pub extended: &'a Extended,
+}
+
+impl Known<'_> {
+    /// Whether what was looked for on a drawing is what would be found again for a guide: the hypotheses and the guide are the
+    /// same there. The corrections of other drawings do not matter.
+    fn holds(&self, source: &Pooled, guide: &Guide, d: usize) -> bool {
+        let models = match (&self.source.models, &source.models) {
+            (Some(before), Some(now)) => Arc::ptr_eq(before, now),
+            _ => false,
+        };
+        let same_pool = || {
+            let (before, now) = (&self.source.pools[d], &source.pools[d]);
+            before.len() == now.len() && before.iter().zip(now).all(|(a, b)| a.is_at(b))
+        };
+        models
+            && self.source.drawings == source.drawings
+            && !self.source.corrected(d)
+            && !source.corrected(d)
+            && self.guide.same_on(guide, d)
+            && (ptr::eq(self.source, source) || same_pool())
     }
 }
 
@@ -86,49 +120,47 @@ impl Extended {
     /// The pools of a part without free drawings.
     pub fn unchanged(pools: &Arc<Pools>) -> Self {
         let counts: Vec<usize> = pools.iter().map(Vec::len).collect();
-        Self { pools: pools.clone(), swept: counts.clone(), found: counts }
+        Self { pools: pools.clone(), swept: counts.clone(), found: counts, looked: Vec::new() }
     }
 }
 
-/// The pools of `source` with the hypotheses by a guide. `known` are the same by another guide that differs in the unclaimed
-/// figure only.
+/// The pools of `source` with the hypotheses by a guide. What is `known` and still holds is not looked for again.
 pub(super) fn mend(
     stage: &Stage,
     source: &Pooled,
     guide: &Guide,
-    known: Option<(&Guide, &Extended)>,
+    known: Option<Known>,
 ) -> Result<Extended, TrackError> {
-    let (mut pools, swept): (Pools, Vec<usize>) = match known {
-        Some((_, known)) => {
-            let first = known.pools.iter().zip(&known.swept).map(|(pool, &count)| pool[..count].to_vec());
-            (first.collect(), known.swept.clone())
+    let unmoved = known.filter(|known| ptr::eq(known.source, source) && known.guide.path == guide.path);
+    let (mut pools, swept): (Pools, Vec<usize>) = match unmoved {
+        Some(Known { extended, .. }) => {
+            let first = extended.pools.iter().zip(&extended.swept).map(|(pool, &count)| pool[..count].to_vec());
+            (first.collect(), extended.swept.clone())
         }
         None => carried_on(stage, source, &guide.path)?,
     };
-    let found: Vec<Vec<Hypothesis>> = (0..pools.len())
+    let looked: Vec<Arc<Vec<Hypothesis>>> = (0..pools.len())
         .into_par_iter()
         .with_max_len(1)
-        .map(|d| match known {
-            Some((before, known)) if before.unclaimed[d] == guide.unclaimed[d] => {
-                Ok(known.pools[d][known.swept[d]..known.found[d]].to_vec())
-            }
-            _ => looked_for(stage, &source.pools, guide, d),
+        .map(|d| match known.filter(|known| known.holds(source, guide, d)) {
+            Some(known) => Ok(known.extended.looked[d].clone()),
+            None => looked_for(stage, &source.pools, guide, d).map(Arc::new),
         })
         .collect::<Result<_, TrackError>>()?;
-    add_new(&mut pools, found);
+    add_new(&mut pools, looked.iter().map(|found| found.to_vec()));
     let found: Vec<usize> = pools.iter().map(Vec::len).collect();
     // What is the same stays the same piece of memory, by which others know it.
     let same = |known: &Extended| {
         known.found == found && known.pools.iter().zip(&pools).all(|(known, pool)| known.starts_with(pool))
     };
-    if let Some((_, known)) = known.filter(|(_, known)| same(known)) {
-        return Ok(known.clone());
+    if let Some(Known { extended, .. }) = unmoved.filter(|known| same(known.extended)) {
+        return Ok(Extended { looked, ..extended.clone() });
     }
     if !stage.models.iter().all(|model| model.necks.is_empty()) {
         let more = from_found(stage, source, &pools)?;
         add_new(&mut pools, more);
     }
-    Ok(Extended { pools: Arc::new(pools), swept, found })
+    Ok(Extended { pools: Arc::new(pools), swept, found, looked })
 }
 
 /// New hypotheses on the neighbours of drawings on which the part alone would choose one that was found for the guide.

@@ -75,7 +75,7 @@ use joint::figure::claims::Claims;
 use joint::lead::Lead;
 use joint::shadow::Memory;
 use mechanisms::{Mechanism, Mechanisms};
-use mend::{Extended, Guide};
+use mend::{Extended, Guide, Known};
 use outward::plan::Portion;
 use pooled::Pooled;
 use pooling::{corrected_pools, mended_pools, plain_pools};
@@ -379,17 +379,16 @@ impl Rototoon {
                 let source = &pooled[m];
                 let key = source.key();
                 let guide = Guide::new(source, &paths[m], &leads[m], claims);
-                let same =
-                    |known: &&Mended| Arc::ptr_eq(&known.source, source) && known.guide.differs_in_figure_only(&guide);
-                let known = self.mended.get(&key).filter(same);
-                if let Some(known) = known.filter(|known| known.guide == guide) {
+                let known = self.mended.get(&key);
+                let unmoved = known.filter(|known| Arc::ptr_eq(&known.source, source));
+                if let Some(known) = unmoved.filter(|known| known.guide == guide) {
                     return Ok(known.clone());
                 }
                 let progress = shared.of(stretch[m]);
                 let kit = self.kit(frames, &progress);
-                let before = known.map(|known| (&known.guide, &known.extended));
+                let before = known.map(|Mended { source, guide, extended, .. }| Known { source, guide, extended });
                 let (result, extended) = mended_pools(kit, source, &guide, before)?;
-                let unchanged = known.filter(|known| Arc::ptr_eq(&known.result.pools, &extended.pools));
+                let unchanged = unmoved.filter(|known| Arc::ptr_eq(&known.result.pools, &extended.pools));
                 let result = unchanged.map_or_else(|| Arc::new(result), |known| known.result.clone());
                 Ok(Mended { source: source.clone(), guide, extended, result })
             })

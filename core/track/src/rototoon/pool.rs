@@ -60,6 +60,11 @@ impl Hypothesis {
         Self { origin: None, ..self.clone() }
     }
 
+    /// Whether another hypothesis has the same pose of the same model on the same drawing.
+    pub fn is_at(&self, other: &Self) -> bool {
+        self.model == other.model && self.pose == other.pose
+    }
+
     /// Mean distance of the control points, in working pixels.
     pub fn distance(&self, other: &Self) -> f64 {
         mean_distance(&self.points, &other.points)

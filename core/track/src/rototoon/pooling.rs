@@ -2,7 +2,7 @@
 //! joint choice. Each is a pure function of its input.
 
 use super::corrected;
-use super::mend::{Extended, Guide, mend};
+use super::mend::{Extended, Guide, Known, mend};
 use super::pool;
 use super::pooled::Pooled;
 use super::stage::{Kit, Stage};
@@ -48,13 +48,13 @@ pub(super) fn corrected_pools(kit: Kit, job: &Job, plain: &Pooled) -> Result<Poo
     Ok(Pooled { job, drawings, models, pools, carried, path, steps, center_reach })
 }
 
-/// Pools with the hypotheses that a joint choice adds, and the same before they became shared. `known` are those by another guide
-/// that differs in the unclaimed figure only.
+/// Pools with the hypotheses that a joint choice adds, and the same before they became shared. `known` are those of the same
+/// part by another guide or with other corrections.
 pub(super) fn mended_pools(
     kit: Kit,
     source: &Pooled,
     guide: &Guide,
-    known: Option<(&Guide, &Extended)>,
+    known: Option<Known>,
 ) -> Result<(Pooled, Extended), TrackError> {
     let (drawings, models) = (source.drawings.clone(), source.models.clone());
     let extended = if models.is_some() {

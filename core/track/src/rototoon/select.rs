@@ -94,7 +94,8 @@ impl Motion for Direct<'_> {
 
 /// Index of the chosen hypothesis on each drawing. Each drawing must have at least one.
 pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
-    let costs: Vec<Vec<f64>> = candidates.iter().map(|states| states.iter().map(|state| state.cost).collect()).collect();
+    let costs: Vec<Vec<f64>> =
+        candidates.iter().map(|states| states.iter().map(|state| state.cost).collect()).collect();
     path_of_least_cost(&costs, &Direct { candidates, smoothness })
 }
 
@@ -138,7 +139,7 @@ pub fn path_of_least_cost(costs: &[Vec<f64>], motion: &impl Motion) -> Vec<usize
 }
 
 /// The states of a path of least cost, from the table of the last two drawings and the origins of the ones before.
-pub(super) fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec<usize> {
+fn trace_back(costs: &[Vec<f64>], origins: &[Vec<Vec<usize>>]) -> Vec<usize> {
     let (mut g, mut h) = (0, 0);
     for (i, row) in costs.iter().enumerate() {
         for (j, cost) in row.iter().enumerate() {

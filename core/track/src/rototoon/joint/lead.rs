@@ -36,6 +36,32 @@ impl Lead {
             Self::Body(_) => None,
         }
     }
+
+    /// Whether it says anything about a drawing.
+    fn leads_on(&self, d: usize) -> bool {
+        match self {
+            Self::Hinge { places, .. } => places[d].is_some(),
+            Self::Body(motions) => motions[d].is_some(),
+        }
+    }
+
+    /// Whether another lead says the same about a drawing.
+    fn same_on(&self, other: &Self, d: usize) -> bool {
+        match (self, other) {
+            (Self::Hinge { bindings, places }, Self::Hinge { bindings: theirs, places: there }) => {
+                bindings == theirs && places[d] == there[d]
+            }
+            (Self::Body(motions), Self::Body(theirs)) => motions[d] == theirs[d],
+            _ => false,
+        }
+    }
+}
+
+/// Whether leads say the same about a drawing.
+pub fn same_on(a: &[Lead], b: &[Lead], d: usize) -> bool {
+    let on = |leads: &[Lead]| leads.iter().filter(|lead| lead.leads_on(d)).count();
+    let [mine, theirs] = [a, b].map(|leads| leads.iter().filter(move |lead| lead.leads_on(d)));
+    on(a) == on(b) && mine.zip(theirs).all(|(a, b)| a.same_on(b, d))
 }
 
 /// The leads of each contender. `paths` are the present choices.

@@ -131,7 +131,8 @@ mod tests {
         for counts in [[2, 3, 4], [33, 33, 33]] {
             let pools = pools(counts);
             let lengths = Lengths::new(&pools);
-            let candidates: Vec<Vec<_>> = pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
+            let candidates: Vec<Vec<_>> =
+                pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
             let smoothness = Smoothness::new(30.0);
             let direct = Direct { candidates: &candidates, smoothness };
             let moving = Moving { lengths: &lengths, smoothness };

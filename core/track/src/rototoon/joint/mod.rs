@@ -27,6 +27,8 @@ pub mod margin;
 mod masks;
 mod moves;
 pub mod pairs;
+#[cfg(test)]
+mod reference;
 pub mod shadow;
 mod tables;
 #[cfg(test)]
@@ -38,8 +40,8 @@ pub use contender::Contender;
 use companion::{Companions, Pair};
 use figure::Figure;
 use figure::canvas::Canvas;
-use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use moves::{Changes, Move, Proposal, Table};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -126,7 +128,7 @@ fn round(scene: &cost::Scene, moves: &mut [Move], paths: &mut [Vec<usize>], chan
         let few: Vec<usize> = (next..moves.len()).filter(due).take(AT_ONCE).collect();
         let Some(last) = few.last() else { return };
         let found: Vec<_> = few.par_iter().map(|&m| (m, scene.proposal(&moves[m], paths, changed))).collect();
-        let keep = |(m, (proposal, tables)): (usize, (Option<Proposal>, Vec<Table>))| {
+        let keep = |(m, (proposal, tables)): (usize, (Option<Proposal>, Vec<Arc<Table>>))| {
             moves[m].tables = tables;
             (m, proposal)
         };

@@ -10,6 +10,7 @@ use super::lengths::Among;
 use super::pairs::{PairProblem, best_pair};
 use super::tie::overlap;
 use crate::rototoon::select::{Candidate, path_of_least_cost};
+use std::sync::Arc;
 
 /// Hypotheses per part and drawing that a move of two parts considers.
 const STATES: usize = 6;
@@ -25,11 +26,10 @@ pub struct Move {
     /// The number of changes when the move was last tried.
     pub tried: Option<usize>,
     /// By drawing: the costs that were found last.
-    pub tables: Vec<Table>,
+    pub tables: Vec<Arc<Table>>,
 }
 
 /// What a move costs on a drawing.
-#[derive(Clone)]
 pub struct Table {
     /// The number of changes when it was found.
     at: usize,
@@ -82,20 +82,21 @@ impl Move {
 impl Scene<'_> {
     /// What a move gives while the other contenders are fixed: new paths (none if they do not lower the energy), and the costs
     /// by drawing.
-    pub fn proposal(&self, of: &Move, paths: &Paths, changes: &Changes) -> (Option<Proposal>, Vec<Table>) {
+    pub fn proposal(&self, of: &Move, paths: &Paths, changes: &Changes) -> (Option<Proposal>, Vec<Arc<Table>>) {
         let table = |d: usize| {
             let states: Vec<Vec<usize>> = of.who.iter().map(|&c| self.states(of.who.len(), c, d, paths)).collect();
-            let known = of.tables.get(d).filter(|known| known.states == states && !self.differs(of, (d, known.at), changes));
+            let known =
+                of.tables.get(d).filter(|known| known.states == states && !self.differs(of, (d, known.at), changes));
             known.cloned().unwrap_or_else(|| {
                 let costs = match of.who[..] {
                     [c] => self.costs((c, d), &states[0], paths),
                     [far, near] => self.pair_costs([far, near], d, &states, paths),
                     _ => Vec::new(),
                 };
-                Table { at: changes.count, states, costs }
+                Arc::new(Table { at: changes.count, states, costs })
             })
         };
-        let tables: Vec<Table> = (0..self.contenders[of.who[0]].pools.len()).map(table).collect();
+        let tables: Vec<Arc<Table>> = (0..self.contenders[of.who[0]].pools.len()).map(table).collect();
         let new = self.best(&of.who, &tables);
         (self.gains(&new, paths).then_some(new), tables)
     }
@@ -111,7 +112,7 @@ impl Scene<'_> {
     }
 
     /// The paths of least cost by the costs on each drawing.
-    fn best(&self, who: &[usize], tables: &[Table]) -> Proposal {
+    fn best(&self, who: &[usize], tables: &[Arc<Table>]) -> Proposal {
         let costs: Vec<Vec<f64>> = tables.iter().map(|table| table.costs.clone()).collect();
         let states: Vec<Vec<Vec<usize>>> =
             (0..who.len()).map(|k| tables.iter().map(|table| table.states[k].clone()).collect()).collect();

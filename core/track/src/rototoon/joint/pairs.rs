@@ -2,11 +2,12 @@
 //!
 //! The motion cost is the sum of both parts' costs, so it is tabulated for each part alone. The minimum over the pairs
 //! of states two drawings before is taken over one part's states first and then over the other's. For s states per part
-//! this needs 2 s⁵ operations per drawing, instead of the s⁶ for all triples of pairs.
+//! this needs 2 s⁵ operations per drawing, instead of the s⁶ for all triples of pairs. Only least costs are kept, not where they
+//! came from: that is found again along the best path alone, so the inner loops are plain minima.
 //!
 //! Source: our own; the path search for a single part is in `select`.
 
-use crate::rototoon::select::{Motion, trace_back};
+use crate::rototoon::select::Motion;
 
 /// Two parts with some states on each drawing.
 pub struct PairProblem<M> {
@@ -42,91 +43,131 @@ impl Table {
         Self { counts, speed, acceleration }
     }
 
-    fn speed(&self, g: usize, h: usize) -> f64 {
-        self.speed[g * self.counts[2] + h]
+    /// Costs of the speed from a state, by the next one.
+    fn speeds(&self, g: usize) -> &[f64] {
+        &self.speed[g * self.counts[2]..][..self.counts[2]]
     }
 
-    fn acceleration(&self, f: usize, g: usize, h: usize) -> f64 {
-        self.acceleration[(f * self.counts[1] + g) * self.counts[2] + h]
+    /// Costs of the change of speed from two states, by the next one.
+    fn bends(&self, f: usize, g: usize) -> &[f64] {
+        &self.acceleration[(f * self.counts[1] + g) * self.counts[2]..][..self.counts[2]]
     }
 }
 
-/// For one pair of states on the previous drawing: the least cost of arriving there from each state of the second part,
-/// for each next state of the first part.
-struct Arrivals {
-    inner: usize,
-    targets: usize,
-    /// The least cost, and the first part's state two drawings before. Outer index: the second part's state two
-    /// drawings before. Inner index: the first part's state on the present drawing.
-    table: Vec<(f64, usize)>,
+/// The least costs of paths up to a drawing, and the costs of motion to it.
+struct Stage {
+    motion: [Table; 2],
+    /// Least cost of the paths that end with a pair on the drawing before (outer index) and a pair on the drawing.
+    least: Vec<f64>,
 }
 
-impl Arrivals {
-    fn new<M>(problem: &PairProblem<M>, d: usize, g: usize, least: &[Vec<f64>], motion: &[Table; 2]) -> Self {
-        let (inner, targets) = (problem.counts[1][d - 2], problem.counts[0][d]);
-        let g0 = g / problem.counts[1][d - 1];
-        let mut table = vec![(f64::INFINITY, 0); inner * targets];
-        for (f, costs) in least.iter().enumerate() {
-            let (f0, f1) = (f / inner, f % inner);
-            for (h0, best) in table[f1 * targets..][..targets].iter_mut().enumerate() {
-                let cost = costs[g] + motion[0].acceleration(f0, g0, h0);
-                if cost < best.0 {
-                    *best = (cost, f0);
+impl Stage {
+    /// The stage of the second drawing.
+    fn first<M: Motion>(problem: &PairProblem<M>) -> Self {
+        let motion = [0, 1].map(|part: usize| Table::new(problem, part, 1));
+        let mut least = Vec::new();
+        for (g, start) in problem.costs[0].iter().enumerate() {
+            least.extend(steps(&motion, g, &problem.costs[1]).map(|step| start + step));
+        }
+        Self { motion, least }
+    }
+
+    /// The stage of drawing `d`, from that of the drawing before.
+    fn next<M: Motion>(problem: &PairProblem<M>, d: usize, before: &Self) -> Self {
+        let motion = [0, 1].map(|part: usize| Table::new(problem, part, d));
+        let [of_first, of_second] = &motion;
+        let (pairs, costs) = (problem.costs[d - 1].len(), &problem.costs[d]);
+        let mut least = Vec::with_capacity(pairs * costs.len());
+        // Least cost of arriving at a pair from each state of the second part two drawings before (outer index), by the first
+        // part's next state.
+        let mut arrivals = vec![f64::INFINITY; of_second.counts[0] * of_first.counts[2]];
+        let mut bent = vec![f64::INFINITY; costs.len()];
+        for g in 0..pairs {
+            let [g0, g1] = problem.split(d - 1, g);
+            arrivals.fill(f64::INFINITY);
+            for f in 0..problem.costs[d - 2].len() {
+                let [f0, f1] = problem.split(d - 2, f);
+                let own = &mut arrivals[f1 * of_first.counts[2]..][..of_first.counts[2]];
+                lower(own, before.least[f * pairs + g], of_first.bends(f0, g0));
+            }
+            bent.fill(f64::INFINITY);
+            for (f1, arrived) in arrivals.chunks_exact(of_first.counts[2]).enumerate() {
+                let bends = of_second.bends(f1, g1);
+                bent.chunks_exact_mut(of_second.counts[2])
+                    .zip(arrived)
+                    .for_each(|(own, &cost)| lower(own, cost, bends));
+            }
+            least.extend(bent.iter().zip(steps(&motion, g, costs)).map(|(bend, step)| bend + step));
+        }
+        Self { motion, least }
+    }
+
+    /// The pair two drawings before from which the path of least cost comes that ends with two pairs. `before` are the least
+    /// costs up to the drawing before.
+    fn origin<M>(&self, problem: &PairProblem<M>, d: usize, before: &[f64], [g, h]: [usize; 2]) -> usize {
+        let ([g0, g1], [h0, h1]) = (problem.split(d - 1, g), problem.split(d, h));
+        let [firsts, seconds] = [0, 1].map(|part: usize| problem.counts[part][d - 2]);
+        let mut best = (f64::INFINITY, 0);
+        for f1 in 0..seconds {
+            let mut arrival = (f64::INFINITY, 0);
+            for f0 in 0..firsts {
+                let f = f0 * seconds + f1;
+                let cost = before[f * problem.costs[d - 1].len() + g] + self.motion[0].bends(f0, g0)[h0];
+                if cost < arrival.0 {
+                    arrival = (cost, f);
                 }
             }
-        }
-        Self { inner, targets, table }
-    }
-
-    /// Least cost of arriving at a pair of states, and the pair two drawings before.
-    fn least(&self, motion: &[Table; 2], [_, g1]: [usize; 2], [h0, h1]: [usize; 2]) -> (f64, usize) {
-        let mut best = (f64::INFINITY, 0);
-        for f1 in 0..self.inner {
-            let (before, f0) = self.table[f1 * self.targets + h0];
-            let cost = before + motion[1].acceleration(f1, g1, h1);
+            let cost = arrival.0 + self.motion[1].bends(f1, g1)[h1];
             if cost < best.0 {
-                best = (cost, f0 * self.inner + f1);
+                best = (cost, arrival.1);
             }
         }
-        best
+        best.1
+    }
+}
+
+/// Costs of the step from a pair to each pair of the next drawing, whose own costs are given.
+fn steps(motion: &[Table; 2], g: usize, costs: &[f64]) -> impl Iterator<Item = f64> {
+    let inner = motion[1].counts[2];
+    let (first, second) = (motion[0].speeds(g / motion[1].counts[1]), motion[1].speeds(g % motion[1].counts[1]));
+    costs.iter().enumerate().map(move |(h, cost)| cost + first[h / inner] + second[h % inner])
+}
+
+/// Lowers each number to a cost plus the number of a list at its place, if that is less.
+fn lower(numbers: &mut [f64], cost: f64, list: &[f64]) {
+    for (number, more) in numbers.iter_mut().zip(list) {
+        let new = cost + more;
+        *number = if new < *number { new } else { *number };
+    }
+}
+
+impl<M> PairProblem<M> {
+    /// The states of a pair on a drawing.
+    fn split(&self, d: usize, pair: usize) -> [usize; 2] {
+        let inner = self.counts[1][d];
+        [pair / inner, pair % inner]
     }
 }
 
 /// The states of both parts on each drawing, along their paths of least total cost.
 pub fn best_pair<M: Motion>(problem: &PairProblem<M>) -> Vec<[usize; 2]> {
-    let split = |d: usize, pair: usize| {
-        let inner = problem.counts[1][d];
-        [pair / inner, pair % inner]
-    };
-    let count = |d: usize| problem.costs[d].len();
-    if problem.costs.len() < 2 {
-        let least = |d: usize| (0..count(d)).min_by(|&a, &b| problem.costs[d][a].total_cmp(&problem.costs[d][b]));
-        return (0..problem.costs.len()).filter_map(|d| Some(split(d, least(d)?))).collect();
+    let least = |costs: &[f64]| (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b])).unwrap_or(0);
+    let drawings = problem.costs.len();
+    if drawings < 2 {
+        return problem.costs.iter().enumerate().map(|(d, costs)| problem.split(d, least(costs))).collect();
     }
-    let mut motion = [0, 1].map(|part: usize| Table::new(problem, part, 1));
-    let step = |motion: &[Table; 2], d: usize, g: usize, h: usize| {
-        let (from, to) = (split(d - 1, g), split(d, h));
-        problem.costs[d][h] + motion[0].speed(from[0], to[0]) + motion[1].speed(from[1], to[1])
-    };
-    // least[g][h]: least cost of the paths that end with the pair g, then the pair h.
-    let mut least: Vec<Vec<f64>> =
-        (0..count(0)).map(|g| (0..count(1)).map(|h| problem.costs[0][g] + step(&motion, 1, g, h)).collect()).collect();
-    let mut origins: Vec<Vec<Vec<usize>>> = Vec::new();
-    for d in 2..problem.costs.len() {
-        motion = [0, 1].map(|part: usize| Table::new(problem, part, d));
-        let mut next = vec![vec![f64::INFINITY; count(d)]; count(d - 1)];
-        let mut from = vec![vec![0; count(d)]; count(d - 1)];
-        for g in 0..count(d - 1) {
-            let arrived = Arrivals::new(problem, d, g, &least, &motion);
-            for h in 0..count(d) {
-                let (bend, f) = arrived.least(&motion, split(d - 1, g), split(d, h));
-                (next[g][h], from[g][h]) = (bend + step(&motion, d, g, h), f);
-            }
-        }
-        least = next;
-        origins.push(from);
+    let mut stages = vec![Stage::first(problem)];
+    for d in 2..drawings {
+        stages.push(Stage::next(problem, d, &stages[d - 2]));
     }
-    trace_back(&least, &origins).into_iter().enumerate().map(|(d, pair)| split(d, pair)).collect()
+    let count = problem.costs[drawings - 1].len();
+    let end = least(&stages[drawings - 2].least);
+    let mut path = vec![end % count, end / count];
+    for d in (2..drawings).rev() {
+        let ends = [path[path.len() - 1], path[path.len() - 2]];
+        path.push(stages[d - 1].origin(problem, d, &stages[d - 2].least, ends));
+    }
+    path.into_iter().rev().enumerate().map(|(d, pair)| problem.split(d, pair)).collect()
 }
 
 #[cfg(test)]

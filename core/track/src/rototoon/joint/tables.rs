@@ -77,8 +77,7 @@ impl Scene<'_> {
         let hinge = |tie| Some((tie, present(Tie::other(tie, c)?.0)?));
         let hinges: Vec<(&Tie, Placed)> = self.ties.iter().filter_map(hinge).collect();
         let pairs = self.companions.pairs.iter().enumerate();
-        let pairs: Vec<(usize, Placed)> =
-            pairs.filter_map(|(k, pair)| Some((k, present(pair.other(c)?)?))).collect();
+        let pairs: Vec<(usize, Placed)> = pairs.filter_map(|(k, pair)| Some((k, present(pair.other(c)?)?))).collect();
         let cost = |&h: &usize| {
             let own = (c, (d, h));
             hinges.iter().map(|(tie, other)| self.joint(tie, own, *other)).sum::<f64>()
