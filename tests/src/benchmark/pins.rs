@@ -6,15 +6,17 @@
 //! with that of a new tracker.
 
 use super::run::{first, track};
+use crate::measure::percentile;
 use crate::truth::Truth;
 use anyhow::{Result, ensure};
 use rototoon::scene::{FrameNumber, Scene};
 use rototoon::track::{TrackOptions, Tracker};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::fmt::Write;
 use std::path::Path;
 
 /// A pin, and how long the track after it took.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Pinned {
     /// Name of the part.
     pub part: String,
@@ -66,4 +68,42 @@ fn middles(scene: &Scene) -> Vec<(usize, FrameNumber)> {
         spans.map(|frame| (p, frame)).collect::<Vec<_>>()
     };
     (0..scene.parts.len()).flat_map(of_part).collect()
+}
+
+/// A table of the times, by set.
+pub fn markdown(found: &[(String, Vec<Pinned>)]) -> String {
+    let mut text = String::from("| set | pins | median | longest |\n| --- | ---: | ---: | ---: |\n");
+    for (set, pins) in found.iter().filter(|(_, pins)| !pins.is_empty()) {
+        let milliseconds = |q: f64| 1e3 * percentile(pins.iter().map(|pin| pin.seconds).collect(), q);
+        let (median, longest) = (milliseconds(0.5), milliseconds(1.0));
+        let _ = writeln!(text, "| {set} | {} | {median:.0} ms | {longest:.0} ms |", pins.len());
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::scene::{Footage, Part};
+
+    #[test]
+    fn pins_are_in_the_middle_of_spans_with_drawings_between_their_keys() {
+        let part = |keys: &[FrameNumber]| Part {
+            keys: keys.iter().map(|&frame| (frame, Vec::new())).collect(),
+            ..Part::default()
+        };
+        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 4, height: 4 };
+        let scene = Scene { footage, parts: vec![part(&[0, 5, 6]), part(&[3]), part(&[0, 2, 9])] };
+        assert_eq!(middles(&scene), [(0, 2), (2, 1), (2, 5)]);
+    }
+
+    #[test]
+    fn the_table_has_the_median_and_the_longest_time() {
+        let pin = |seconds: f64| Pinned { part: "arm".into(), frame: 1, moved: 2.0, seconds };
+        let found = [("walk".to_owned(), [0.02, 0.9, 0.03].map(pin).to_vec()), ("none".to_owned(), Vec::new())];
+        assert_eq!(
+            markdown(&found).lines().collect::<Vec<_>>(),
+            ["| set | pins | median | longest |", "| --- | ---: | ---: | ---: |", "| walk | 3 | 30 ms | 900 ms |"]
+        );
+    }
 }

@@ -8,6 +8,7 @@
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use rototoon_tests::benchmark::growth::{self, Measured, Sample};
+use rototoon_tests::benchmark::pins::{self, Pinned};
 use rototoon_tests::benchmark::run::Outcome;
 use rototoon_tests::benchmark::table::{self, Failure};
 use rototoon_tests::benchmark::{mechanisms, own, presets, write_files};
@@ -36,6 +37,12 @@ pub struct Arguments {
     /// Measure only the default preset: complete, and without each of its mechanisms.
     #[arg(long, conflicts_with = "presets")]
     ablations: bool,
+    /// Measure instead how long a track takes after a pin, with a pin on each part in the middle of each of its spans.
+    #[arg(long, conflicts_with_all = ["growth", "memory", "ablations", "presets"])]
+    pins: bool,
+    /// With --pins: fail if a tracker that knows the film finds other tracks than a new one.
+    #[arg(long, requires = "pins")]
+    check: bool,
     /// Measure instead how time and memory grow with the frames, parts, points and pixels of synthetic scenes.
     #[arg(long, conflicts_with = "dirs")]
     growth: bool,
@@ -54,6 +61,8 @@ impl Arguments {
             no_edits: false,
             threads: 0,
             ablations: false,
+            pins: false,
+            check: false,
             growth: false,
             memory: false,
         }
@@ -76,6 +85,9 @@ pub fn bench_tracking(arguments: &Arguments) -> Result<()> {
     }
     if arguments.growth || arguments.memory {
         return Ok(());
+    }
+    if arguments.pins {
+        return bench.pins(arguments);
     }
     bench.sets(arguments, &known)
 }
@@ -188,6 +200,26 @@ impl Bench {
         serde_json::from_str(&text).with_context(|| format!("cannot read {results:?}"))
     }
 
+    /// Times after pins, set by set.
+    fn pins(&self, arguments: &Arguments) -> Result<()> {
+        let mut found: Vec<(String, Vec<Pinned>)> = Vec::new();
+        for (set, folder) in self.folders(&arguments.dirs)? {
+            eprintln!("{set}");
+            let mut start = command(&self.program);
+            start.arg("pins").arg(folder).args(["--threads", &self.threads.to_string()]);
+            if arguments.check {
+                start.arg("--check");
+            }
+            let said = capture(&mut start)?;
+            let of_set = serde_json::from_str(&said).with_context(|| format!("found {said:?}, expected times"))?;
+            found.push((set, of_set));
+        }
+        let text = pins::markdown(&found);
+        self.write("pins.md", text.as_bytes())?;
+        println!("{text}\n{} contains pins.md", shown(&self.out));
+        Ok(())
+    }
+
     fn growth(&self) -> Result<()> {
         let mut measured: Vec<Measured> = Vec::new();
         // All quantities share one base scene, which is measured once.
@@ -295,6 +327,8 @@ mod tests {
             no_edits: true,
             threads: 0,
             ablations: false,
+            pins: false,
+            check: false,
             growth: false,
             memory: false,
         };
