@@ -22,6 +22,8 @@ const LENGTHS: [f64; 3] = [0.7, 1.25, 1.5];
 const KEPT: usize = 6;
 /// A part is in doubt where the chains of its two models are this far apart, in working pixels.
 const DOUBT: f64 = 3.0;
+/// A part is in doubt too where its pose fits no better than this: both chains may be stuck at the same wrong place.
+const BADLY: f64 = 0.003;
 
 /// New hypotheses on a drawing: the best folds of some hypotheses of each model, aligned.
 pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: &Unclaimed) -> Vec<Hypothesis> {
@@ -38,7 +40,7 @@ pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: &
 /// The hypotheses of a pool that are folded: the one that is `chosen`, the best one of the other model, and the two that were
 /// carried from the keys. None where the part is not in doubt.
 pub(super) fn bases(pool: &[Hypothesis], chosen: usize) -> Vec<&Hypothesis> {
-    if !matches!(pool, [a, b, ..] if a.distance(b) > DOUBT) {
+    if !matches!(pool, [a, b, ..] if a.distance(b) > DOUBT || pool[chosen].pose.energy > BADLY) {
         return Vec::new();
     }
     let chosen = &pool[chosen];
