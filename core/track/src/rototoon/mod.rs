@@ -22,7 +22,8 @@
 //! 6. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
-//! change the pools of other parts. The tracks of other parts are computed again only if the choice changes them.
+//! change the pools of other parts. Stretches without a change keep their choices ([`chosen`]), and drawings without one what
+//! was looked for there ([`mend`](mod@mend)). The tracks of other parts are computed again only if the choice changes them.
 //!
 //! Work is handed to threads piece by piece (`with_max_len`): if a thread had several pieces, the others would wait for
 //! it at the end.
