@@ -90,6 +90,7 @@ impl Finish {
 pub(super) struct Finished {
     pub source: Arc<Pooled>,
     pub plan: Finish,
+    tools: Arc<Tools>,
     settled: Vec<Settled>,
     /// By drawing: the margin of the joint choice, which depends on other parts too.
     margins: Vec<f64>,
@@ -132,7 +133,7 @@ impl Finished {
         stage.covers = self.plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
         let stage = &stage;
         let refines = kit.mechanisms.has(Mechanism::Refinement);
-        let refiner = refines.then(|| refiner(stage)).flatten();
+        let refiner = self.tools.refiner(stage).filter(|_| refines);
         let refined_on = |d: usize| {
             kit.progress.report("Tracking", 0.95)?;
             Ok(match (known(d), &refiner) {
@@ -166,11 +167,23 @@ impl Finished {
         self.settled[d].evidence.iter().map(|seen| with_margin(seen, self.margins[d])).collect()
     }
 
+    fn same_models(&self, source: &Pooled) -> bool {
+        self.source.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
+    /// The tools, if everything that they depend on is the same again: the keys, and what hides the part there.
+    fn tools(&self, source: &Pooled, plan: &Finish) -> Option<&Arc<Tools>> {
+        let [old, new] = [&self.plan, plan].map(|plan| plan.occluders.first().zip(plan.occluders.last()));
+        (self.same_models(source) && old == new).then_some(&self.tools)
+    }
+
     /// The settled result of drawing `d`, if everything that it depends on is the same again.
     fn of(&self, source: &Pooled, plan: &Finish, d: usize) -> Option<&Settled> {
         let old = &self.source;
-        let same_models = old.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b));
-        let e = old.drawings.iter().position(|drawing| *drawing == source.drawings[d]).filter(|_| same_models)?;
+        let e = old.drawings.iter().position(|drawing| *drawing == source.drawings[d])?;
+        if !self.same_models(source) {
+            return None;
+        }
         let corrections = |pooled: &Pooled, at: &Drawing| -> Vec<Option<Correction>> {
             (at.first..=at.last).map(|i| pooled.job.corrections.get(&i).cloned()).collect()
         };
@@ -190,14 +203,15 @@ pub(super) fn finish(
     before: Option<&Finished>,
 ) -> Result<Finished, TrackError> {
     if pooled.models.is_none() {
-        return Ok(Finished { source: pooled.clone(), plan, settled: Vec::new(), margins: Vec::new(), track: None });
+        let (source, tools) = (pooled.clone(), Arc::default());
+        return Ok(Finished { source, plan, tools, settled: Vec::new(), margins: Vec::new(), track: None });
     }
     let mut stage = Stage::set(kit, &pooled.job, pooled.models.clone())?;
     stage.center_reach = pooled.center_reach.clone();
     let width = stage.width();
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
-    let tools = Tools::default();
+    let tools = before.and_then(|before| before.tools(pooled, &plan)).cloned().unwrap_or_default();
     let settled: Vec<Settled> = (0..stage.drawings.len())
         .into_par_iter()
         .with_max_len(1)
@@ -208,14 +222,21 @@ pub(super) fn finish(
         })
         .collect::<Result<_, TrackError>>()?;
     let margins = vec![LARGEST; settled.len()];
-    Ok(Finished { source: pooled.clone(), plan, settled, margins, track: None })
+    Ok(Finished { source: pooled.clone(), plan, tools, settled, margins, track: None })
 }
 
-/// What all drawings of a part share. It is made when the first drawing needs it.
+/// What all drawings of a part share. It is made when the first drawing needs it, and kept while it would be the same.
 #[derive(Default)]
 struct Tools {
     refiner: OnceLock<Option<Refiner>>,
     reference: OnceLock<Reference>,
+}
+
+impl Tools {
+    /// The contour's colour templates. None for contours without a shape.
+    fn refiner(&self, stage: &Stage) -> Option<&Refiner> {
+        self.refiner.get_or_init(|| refiner(stage)).as_ref()
+    }
 }
 
 fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, tools: &Tools, d: usize) -> Settled {
@@ -235,7 +256,7 @@ fn settle(stage: &Stage, pooled: &Pooled, plan: &Finish, tools: &Tools, d: usize
     if !between {
         return Settled { seen: None, points: rough, evidence: Vec::new(), again: Vec::new() };
     }
-    let refiner = tools.refiner.get_or_init(|| refiner(stage)).as_ref();
+    let refiner = tools.refiner(stage);
     let points = match refiner {
         Some(refiner) if stage.kit.mechanisms.has(Mechanism::Refinement) => {
             refiner.improved(&frame(stage, d), rough.clone())

@@ -14,7 +14,7 @@ use super::joint::figure::claims::{Claims, Unclaimed};
 use super::joint::lead::{self, Lead};
 use super::lattice::limb::Joint;
 use super::lattice::mesh::Binding;
-use super::pool::{Hypothesis, Pools, add_new, choose, hypothesis, is_new, swept};
+use super::pool::{Hypothesis, Pools, add_new, choose, hypothesis, swept};
 use super::pooled::Pooled;
 use super::propagate::Model;
 use super::stage::Stage;
@@ -51,7 +51,7 @@ pub(super) struct Extended {
     swept: Vec<usize>,
     /// By drawing: the number with those that were looked for, but without those that were carried on from them.
     found: Vec<usize>,
-    /// By drawing: what was looked for, with what was known already.
+    /// By drawing: what was looked for, with what the pools had already.
     looked: Vec<Arc<Vec<Hypothesis>>>,
 }
 
@@ -78,13 +78,6 @@ impl Guide {
     pub fn path(&self) -> &[usize] {
         &self.path
     }
-
-    /// Whether another guide says the same about a drawing.
-    fn same_on(&self, other: &Self, d: usize) -> bool {
-        self.path[d] == other.path[d]
-            && self.unclaimed[d] == other.unclaimed[d]
-            && lead::same_on(&self.leads, &other.leads, d)
-    }
 }
 
 /// Pools that were extended before, and by what guide.
@@ -96,23 +89,26 @@ pub(super) struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// Whether what was looked for on a drawing is what would be found again for a guide: the hypotheses and the guide are the
-    /// same there. The corrections of other drawings do not matter.
+    /// Whether what was looked for on a drawing is what would be found again for a guide: what leads there is the same, and
+    /// where something of the figure is unclaimed, the poses to begin from are. Nothing is looked for on corrected drawings, and
+    /// the corrections of other drawings do not matter.
     fn holds(&self, source: &Pooled, guide: &Guide, d: usize) -> bool {
         let models = match (&self.source.models, &source.models) {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
             _ => false,
         };
-        let same_pool = || {
-            let (before, now) = (&self.source.pools[d], &source.pools[d]);
+        let same_bases = || {
+            let before = bases(&self.source.pools[d], self.guide.path[d]);
+            let now = bases(&source.pools[d], guide.path[d]);
             before.len() == now.len() && before.iter().zip(now).all(|(a, b)| a.is_at(b))
         };
         models
             && self.source.drawings == source.drawings
             && !self.source.corrected(d)
             && !source.corrected(d)
-            && self.guide.same_on(guide, d)
-            && (ptr::eq(self.source, source) || same_pool())
+            && lead::same_on(&self.guide.leads, &guide.leads, d)
+            && self.guide.unclaimed[d] == guide.unclaimed[d]
+            && (guide.unclaimed[d].is_none() || same_bases())
     }
 }
 
@@ -206,7 +202,6 @@ fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<V
         found.extend(folds(stage, d, &bases, unclaimed));
         found.extend(turns(stage, d, &bases, &Turned::Pieces(unclaimed)));
     }
-    found.retain(|h| is_new(&pools[d], h));
     Ok(found)
 }
 
