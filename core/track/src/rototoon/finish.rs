@@ -171,10 +171,13 @@ impl Finished {
         self.source.models.as_ref().zip(source.models.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(a, b))
     }
 
-    /// The tools, if everything that they depend on is the same again: the keys, and what hides the part there.
+    /// The tools, if everything that they depend on is the same again: the keys, the frames that show their drawings, and what
+    /// hides the part there. A correction of a held frame may begin a key's drawing elsewhere.
     fn tools(&self, source: &Pooled, plan: &Finish) -> Option<&Arc<Tools>> {
-        let [old, new] = [&self.plan, plan].map(|plan| plan.occluders.first().zip(plan.occluders.last()));
-        (self.same_models(source) && old == new).then_some(&self.tools)
+        let drawings = [&*self.source, source].map(|pooled| pooled.drawings.first().zip(pooled.drawings.last()));
+        let occluders = [&self.plan, plan].map(|plan| plan.occluders.first().zip(plan.occluders.last()));
+        let same = drawings[0] == drawings[1] && occluders[0] == occluders[1];
+        (self.same_models(source) && same).then_some(&self.tools)
     }
 
     /// The settled result of drawing `d`, if everything that it depends on is the same again.
