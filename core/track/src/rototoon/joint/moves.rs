@@ -1,8 +1,8 @@
 //! Moves that lower the joint energy: new paths for one part, or for two parts at once.
 //!
 //! With the other parts fixed, the energy of one part's path is a sum over drawings and over pairs and triples of
-//! neighbouring drawings. So its best path is found exactly ([`best_path`]). For two parts the state of a drawing is a
-//! pair of hypotheses, and its motion cost is the sum of both parts' motion costs ([`pairs`](super::pairs)).
+//! neighbouring drawings. So its best path is found exactly ([`path_of_least_cost`]). For two parts the state of a drawing
+//! is a pair of hypotheses, and its motion cost is the sum of both parts' motion costs ([`pairs`](super::pairs)).
 
 use super::contender::{Paths, State};
 use super::cost::Scene;
