@@ -16,7 +16,7 @@ use super::pooled::Pooled;
 use super::refine::{Frame, Key, Refiner};
 use super::stage::{Kit, Stage};
 use crate::contract::error::TrackError;
-use crate::contract::job::{Correction, SpanSummary, SpanTrack, Termination};
+use crate::contract::job::{SpanSummary, SpanTrack, Termination};
 use crate::contract::tasks::Task;
 use crate::shared::drawings::Drawing;
 use crate::shared::features::working_scale;
@@ -187,12 +187,9 @@ impl Finished {
         if !self.same_models(source) {
             return None;
         }
-        let corrections = |pooled: &Pooled, at: &Drawing| -> Vec<Option<Correction>> {
-            (at.first..=at.last).map(|i| pooled.job.corrections.get(&i).cloned()).collect()
-        };
         let same = self.plan.chosen[e] == plan.chosen[d]
             && self.plan.occluders[e] == plan.occluders[d]
-            && corrections(old, &old.drawings[e]) == corrections(source, &source.drawings[d])
+            && old.corrections(e) == source.corrections(d)
             && old.pools[e] == source.pools[d];
         same.then(|| &self.settled[e])
     }

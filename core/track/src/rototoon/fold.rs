@@ -1,8 +1,10 @@
-//! Hypotheses of limbs that are folded at a joint or drawn longer and shorter, where something of the figure is unexplained.
+//! Hypotheses of limbs that are folded at a joint or drawn longer and shorter, where something of the figure is unexplained or
+//! the artist corrected the limb.
 //!
 //! A limb in doubt is tried with each half turned about a joint in the middle and to both sides of it, in steps of 20°, and
 //! with each half longer and shorter. The starts are ranked by their fit and by how much they cover of what the other
-//! parts leave of the figure ([`claims`](super::joint::figure::claims)). The best few are aligned.
+//! parts leave of the figure ([`claims`](super::joint::figure::claims)); on a corrected drawing of a film without a figure by
+//! their fit alone. The best few are aligned.
 
 use super::joint::figure::claims::Unclaimed;
 use super::lattice::limb::Joint;
@@ -26,11 +28,11 @@ const DOUBT: f64 = 3.0;
 const BADLY: f64 = 0.003;
 
 /// New hypotheses on a drawing: the best folds of some hypotheses of each model, aligned.
-pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: &Unclaimed) -> Vec<Hypothesis> {
+pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: Option<&Unclaimed>) -> Vec<Hypothesis> {
     let of_model = |model: usize| {
         let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
         let starts = bases.iter().filter(|base| base.model == model).flat_map(|base| folded(own, &base.pose.nodes));
-        let kept = best_apart(ranked(own, &scenery, starts, Some(unclaimed)), KEPT);
+        let kept = best_apart(ranked(own, &scenery, starts, unclaimed), KEPT);
         let align = |start: Pose| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None);
         kept.into_iter().map(align).collect::<Vec<_>>()
     };

@@ -6,6 +6,8 @@
 //!   in places that the search over the complete picture ranks too low.
 //! - Limbs are also tried folded, longer and shorter ([`fold`](super::fold)), and turned at their necks ([`turns`](super::turns)).
 //!   What is found that way is carried to the neighbours too.
+//! - On a drawing that the artist corrected, what is folded or turned is moved to the corrections first. So a limb with both ends
+//!   pinned bends to either side between them. Neither joints nor bodies lead it there: the artist says where it is.
 //! - Where a part is not where the body that it goes with takes it, the body's motion is tried.
 
 use super::fold::{JOINTS, bases, folds};
@@ -60,7 +62,7 @@ impl Guide {
     pub fn new(source: &Pooled, path: &[usize], leads: &[Lead], claims: Option<&Claims>) -> Self {
         let last = source.pools.len().saturating_sub(1);
         let near = |d: usize| {
-            let claims = claims.filter(|_| d != 0 && d != last && !source.corrected(d))?;
+            let claims = claims.filter(|_| d != 0 && d != last)?;
             let models = source.models.as_ref().filter(|models| models.iter().any(|model| model.limb.is_some()))?;
             let (low, high) = polygon::bounds(&models[0].texture.mesh.rest)?;
             let mut places: Vec<Point> =
@@ -89,9 +91,9 @@ pub(super) struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// Whether what was looked for on a drawing is what would be found again for a guide: what leads there is the same, and
-    /// where something of the figure is unclaimed, the poses to begin from are. Nothing is looked for on corrected drawings, and
-    /// the corrections of other drawings do not matter.
+    /// Whether what was looked for on a drawing is what would be found again for a guide: its corrections and what leads there are
+    /// the same, and where it is corrected or something of the figure is unclaimed, the poses to begin from are. The corrections
+    /// of other drawings do not matter.
     fn holds(&self, source: &Pooled, guide: &Guide, d: usize) -> bool {
         let models = match (&self.source.models, &source.models) {
             (Some(before), Some(now)) => Arc::ptr_eq(before, now),
@@ -104,11 +106,10 @@ impl Known<'_> {
         };
         models
             && self.source.drawings == source.drawings
-            && !self.source.corrected(d)
-            && !source.corrected(d)
+            && self.source.corrections(d) == source.corrections(d)
             && lead::same_on(&self.guide.leads, &guide.leads, d)
             && self.guide.unclaimed[d] == guide.unclaimed[d]
-            && (guide.unclaimed[d].is_none() || same_bases())
+            && (guide.unclaimed[d].is_none() && !source.corrected(d) || same_bases())
     }
 }
 
@@ -177,14 +178,15 @@ fn carried_on(stage: &Stage, source: &Pooled, path: &[usize]) -> Result<(Pools, 
     Ok((pools, counts))
 }
 
-/// New hypotheses on a drawing: about the joints with surer parts, where bodies carry the part, and folds.
+/// New hypotheses on a drawing: about the joints with surer parts and where bodies carry the part, if it is not corrected, and
+/// folds.
 fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<Vec<Hypothesis>, TrackError> {
-    if d == 0 || d + 1 == pools.len() || stage.corrected(d) {
+    if d == 0 || d + 1 == pools.len() {
         return Ok(Vec::new());
     }
-    let unclaimed = guide.unclaimed[d].as_ref();
+    let (unclaimed, corrected) = (guide.unclaimed[d].as_ref(), stage.corrected(d));
     let mut found = Vec::new();
-    for lead in &guide.leads {
+    for lead in guide.leads.iter().filter(|_| !corrected) {
         stage.kit.progress.report("Tracking", 0.85)?;
         for model in 0..2 {
             let new = match lead {
@@ -196,7 +198,7 @@ fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<V
             found.extend(new.into_iter().flatten());
         }
     }
-    if let Some(unclaimed) = unclaimed {
+    if unclaimed.is_some() || corrected {
         stage.kit.progress.report("Tracking", 0.85)?;
         let bases = bases(&pools[d], guide.path[d]);
         found.extend(folds(stage, d, &bases, unclaimed));

@@ -2,7 +2,7 @@
 
 use super::pool::{Carried, Pools};
 use super::propagate::Model;
-use crate::contract::job::Job;
+use crate::contract::job::{Correction, Job};
 use crate::shared::drawings::Drawing;
 use crate::shared::features::working_scale;
 use rototoon_base::geometry::Point;
@@ -32,8 +32,13 @@ impl Pooled {
 
     /// Whether the artist has corrected the part on a drawing.
     pub fn corrected(&self, drawing: usize) -> bool {
+        self.corrections(drawing).iter().any(Option::is_some)
+    }
+
+    /// The artist's corrections of the frames of a drawing.
+    pub fn corrections(&self, drawing: usize) -> Vec<Option<&Correction>> {
         let Drawing { first, last } = self.drawings[drawing];
-        (first..=last).any(|index| self.job.corrections.contains_key(&index))
+        (first..=last).map(|index| self.job.corrections.get(&index)).collect()
     }
 
     /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.

@@ -1,4 +1,4 @@
-//! Ranks rough poses of a model, of which the best are aligned.
+//! Ranks rough poses of a model, of which the best are aligned. On a corrected drawing they are moved to the corrections first.
 
 use super::joint::figure::claims::Unclaimed;
 use super::propagate::{Model, Pose, Scenery, mean_distance};
@@ -19,7 +19,8 @@ pub(super) fn ranked(
     starts: impl Iterator<Item = Vec<Point>>,
     unclaimed: Option<&Unclaimed>,
 ) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = starts.map(|nodes| own.ranked(scenery, nodes)).collect();
+    let settler = own.settler(scenery);
+    let mut poses: Vec<Pose> = starts.map(|nodes| own.ranked(scenery, settler.settle(&nodes))).collect();
     let Some(unclaimed) = unclaimed else { return poses };
     poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
     poses.truncate(BEST_FITS);

@@ -52,8 +52,8 @@ pub(super) fn with_branches(
 pub(super) enum Turned<'a> {
     /// Branches of a part, which only its own fit can tell.
     Branches,
-    /// Pieces of a limb. They are also ranked by what they cover of the unclaimed figure.
-    Pieces(&'a Unclaimed),
+    /// Pieces of a limb. They are also ranked by what they cover of the unclaimed figure, if there is one.
+    Pieces(Option<&'a Unclaimed>),
 }
 
 /// New hypotheses on a drawing: turns of some hypotheses, aligned.
@@ -65,7 +65,7 @@ fn of_model(stage: &Stage, d: usize, model: usize, bases: &[&Hypothesis], turned
     let necks = &stage.models[model].necks;
     let (necks, unclaimed) = match turned {
         Turned::Branches => (&necks.branches, None),
-        Turned::Pieces(unclaimed) => (&necks.others, Some(*unclaimed)),
+        Turned::Pieces(unclaimed) => (&necks.others, *unclaimed),
     };
     let least = |poses: &mut dyn Iterator<Item = &Hypothesis>| {
         poses.min_by(|a, b| a.pose.energy.total_cmp(&b.pose.energy)).cloned()

@@ -3,9 +3,11 @@
 
 mod borders;
 mod branches;
+mod limbs;
 mod memory;
 mod outward;
 mod progress;
+mod remembered;
 mod rotoscope;
 mod scene;
 mod wobble;
