@@ -12,6 +12,7 @@ use super::pool::{Hypothesis, hypothesis};
 use super::propagate::{Model, Pose};
 use super::stage::Stage;
 use super::starts::{SAME_PLACE, best_apart, ranked};
+use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 
 /// Places of the joints that are tried, along the limb.
@@ -34,7 +35,7 @@ pub(super) fn folds(stage: &Stage, d: usize, bases: &[&Hypothesis], unclaimed: O
         let starts = bases.iter().filter(|base| base.model == model).flat_map(|base| folded(own, &base.pose.nodes));
         let kept = best_apart(ranked(own, &scenery, starts, unclaimed), KEPT);
         let align = |start: Pose| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None);
-        kept.into_iter().map(align).collect::<Vec<_>>()
+        kept.into_par_iter().map(align).collect::<Vec<_>>()
     };
     (0..2).flat_map(of_model).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::joint::figure::claims::Unclaimed;
 use super::propagate::{Model, Pose, Scenery, mean_distance};
+use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 
 /// Two starts nearer than this mean distance of their nodes count as one, in working pixels.
@@ -20,7 +21,9 @@ pub(super) fn ranked(
     unclaimed: Option<&Unclaimed>,
 ) -> Vec<Pose> {
     let settler = own.settler(scenery);
-    let mut poses: Vec<Pose> = starts.map(|nodes| own.ranked(scenery, settler.settle(&nodes))).collect();
+    let starts: Vec<Vec<Point>> = starts.collect();
+    let settled = starts.par_iter().map(|nodes| own.ranked(scenery, settler.settle(nodes)));
+    let mut poses: Vec<Pose> = settled.collect();
     let Some(unclaimed) = unclaimed else { return poses };
     poses.sort_by(|a, b| a.energy.total_cmp(&b.energy));
     poses.truncate(BEST_FITS);

@@ -59,13 +59,21 @@ impl FrameSource for Arm {
     }
 }
 
+/// Pins control points of the arm to their true places.
+fn pin(scene: &mut Scene, frame: FrameNumber, points: &[usize]) {
+    let truth = Arm::contour(frame);
+    scene.parts[0].pins.entry(frame).or_default().extend(points.iter().map(|&j| (j, truth[j])));
+}
+
+const HAND: usize = 7;
+const SHOULDER: usize = 0;
+const ELBOW: usize = 11;
+
 #[test]
 fn a_limb_with_both_ends_pinned_bends_between_them() {
     let mut scene = Arm::scene();
-    let (hand, shoulder) = (7, 0);
     for frame in [1, 3] {
-        let truth = Arm::contour(frame);
-        scene.parts[0].pins.insert(frame, [hand, shoulder].map(|j| (j, truth[j])).into());
+        pin(&mut scene, frame, &[HAND, SHOULDER]);
     }
     let tracking = Tracker::new(TrackOptions::default()).track(&scene, &Arm, &Silent).unwrap();
     for frame in [1, 3] {
@@ -74,4 +82,22 @@ fn a_limb_with_both_ends_pinned_bends_between_them() {
         let far = Arm::contour(frame).iter().zip(found).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(far < 15.0, "frame {frame}: a point is {far} px from its place");
     }
+}
+
+#[test]
+fn what_was_looked_for_with_corrections_is_found_again_only_with_the_same() {
+    let mut scene = Arm::scene();
+    let mut tracker = Tracker::new(TrackOptions::default());
+    let edits: [(FrameNumber, &[usize]); 5] =
+        [(1, &[HAND]), (3, &[HAND]), (1, &[SHOULDER]), (2, &[ELBOW]), (3, &[ELBOW])];
+    for (frame, points) in edits {
+        pin(&mut scene, frame, points);
+        let again = tracker.track(&scene, &Arm, &Silent).unwrap();
+        let fresh = Tracker::new(TrackOptions::default()).track(&scene, &Arm, &Silent).unwrap();
+        assert!(again.parts == fresh.parts, "frame {frame}, points {points:?}");
+    }
+    scene.parts[0].pins.remove(&1);
+    let again = tracker.track(&scene, &Arm, &Silent).unwrap();
+    let fresh = Tracker::new(TrackOptions::default()).track(&scene, &Arm, &Silent).unwrap();
+    assert!(again.parts == fresh.parts, "without the pins of frame 1");
 }
