@@ -16,7 +16,6 @@ their effect is a mean.
 from __future__ import annotations
 
 import argparse
-import copy
 import json
 import math
 import sys
@@ -79,14 +78,15 @@ def measure(program: str, folder: Path, rounds: int) -> list[tuple[int, int, int
     project = json.loads((folder / "project.json").read_text())
     truth = json.loads((folder / "truth.json").read_text())
     project["footage"]["pattern"] = str((folder / project["footage"]["pattern"]).resolve())
-    project, lines, pins, centers = copy.deepcopy(project), [], 0, 0
+    lines, pins, centers = [], 0, 0
     with tempfile.TemporaryDirectory() as temporary:
-        for _ in range(rounds + 1):
+        for number in range(rounds + 1):
             tracked = track(program, project, Path(temporary))
             bad = bad_points(project, tracked, truth)
             lines.append((pins, centers, sum(len(points) for points in bad.values())))
-            more = correct(project, tracked, truth, bad)
-            pins, centers = pins + more[0], centers + more[1]
+            if number < rounds:
+                more = correct(project, tracked, truth, bad)
+                pins, centers = pins + more[0], centers + more[1]
     return lines
 
 
