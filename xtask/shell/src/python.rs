@@ -72,8 +72,9 @@ pub fn venv(name: &str, python: &Path, requirements: &[&str]) -> Result<PathBuf>
 }
 
 fn install(python: &Path, interpreter: &Path, requirements: &[&str]) -> Result<()> {
-    // Packages of this size are downloaded once, so pip keeps no second copy of them.
-    let flags = ["install", "--disable-pip-version-check", "--no-cache-dir"];
+    // Packages of this size are downloaded once, so pip keeps no second copy of them. Python compiles the modules that are
+    // used when it first reads them. Blender's wheel and NumPy have many that no test uses: all of them would take 5 s of 12.
+    let flags = ["install", "--disable-pip-version-check", "--no-cache-dir", "--no-compile"];
     if capture(command(interpreter).args(["-m", "pip", "--version"])).is_ok() {
         return run(command(interpreter).args(["-m", "pip"]).args(flags).args(requirements));
     }
