@@ -10,6 +10,8 @@ mod doubts;
 mod error;
 mod fill;
 pub mod memory;
+mod paint;
+mod render;
 mod report;
 mod reshape;
 mod sheet;
@@ -25,6 +27,8 @@ pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
+pub use paint::unpainted;
+pub use render::{Picture, RenderJob, render};
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
@@ -41,14 +45,13 @@ use crate::image::Sequence;
 use crate::import::{self, ImportError};
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
-use crate::project::{Document, Inputs, output, validate, write_whole};
-use crate::render::{self, Format, OverlayOptions};
-use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::project::{Document, output, validate};
+use crate::scene::{Footage, FrameNumber, Progress, Scene};
 use crate::snap::{SnapOptions, snap_scene};
 use crate::track::{TrackOptions, Tracker, Tracking};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The pictures of a document in `folder`.
@@ -169,138 +172,6 @@ pub fn snap(
         part.curves = curves;
     }
     Ok(())
-}
-
-/// The picture to render of a frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Picture {
-    /// Contours over the footage.
-    Overlay(OverlayOptions),
-    /// The matte of the closed parts.
-    Matte,
-    /// The footage cut out by the closed parts.
-    Cutout,
-    /// The matte of the closed parts, and in a layer for each part its complete matte; OpenEXR only.
-    Layers,
-    /// The same mattes as the parts of one file; OpenEXR only.
-    Parts,
-    /// A colour for each part, nearer parts over farther ones. An OpenEXR file also has Cryptomatte layers.
-    Ids,
-}
-
-/// What to render and where.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RenderJob {
-    /// The picture.
-    pub picture: Picture,
-    /// The frames; `None` renders the complete footage.
-    pub frames: Option<RangeInclusive<FrameNumber>>,
-    /// Names of the parts; `None` takes all.
-    pub parts: Option<Vec<String>>,
-    /// The output path, ending in `.png` or `.exr`: a pattern with one `%d` or `%0Nd`, or a plain path for a single
-    /// frame.
-    pub output: String,
-}
-
-/// A render job after its check against the document.
-struct Rendering {
-    frames: Vec<(FrameNumber, PathBuf)>,
-    parts: Option<Vec<usize>>,
-    format: Format,
-}
-
-/// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
-/// at all. It runs on the caller's rayon pool.
-///
-/// # Errors
-///
-/// [`PipelineError::Option`] if parts or frames do not fit the document; [`PipelineError::Request`] if the output does not fit
-/// the job; errors of reading, encoding and writing; or
-/// [`PipelineError::Cancelled`].
-pub fn render(
-    document: &Document,
-    folder: &Path,
-    job: &RenderJob,
-    progress: &dyn Progress,
-) -> Result<Vec<PathBuf>, PipelineError> {
-    let sequence = frames(document, folder)?;
-    let plan = plan(document, &sequence, job)?;
-    let mut done = 0;
-    progress.report("Rendering", 0.0)?;
-    let footage = &document.scene.footage;
-    let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
-    let at_once = memory::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
-    for batch in plan.frames.chunks(at_once) {
-        let results: Vec<Result<(), PipelineError>> = batch
-            .par_iter()
-            .map(|(frame, path)| Ok(write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?))
-            .collect();
-        results.into_iter().collect::<Result<(), _>>()?;
-        done += batch.len();
-        progress.report("Rendering", done as f64 / plan.frames.len() as f64)?;
-    }
-    Ok(plan.frames.into_iter().map(|(_, path)| path).collect())
-}
-
-fn picture(
-    document: &Document,
-    sequence: &Sequence,
-    job: &RenderJob,
-    plan: &Rendering,
-    frame: FrameNumber,
-) -> Result<Vec<u8>, PipelineError> {
-    let parts = plan.parts.as_deref();
-    let bytes = match &job.picture {
-        Picture::Matte => render::encode::matte(&render::matte(&document.scene, frame, parts), plan.format),
-        Picture::Cutout => {
-            let pixels = sequence.layer(frame)?;
-            render::encode::layer(&render::cutout(&document.scene, frame, &pixels, parts), plan.format)
-        }
-        Picture::Layers => render::matte_layers(&document.scene, frame, parts),
-        Picture::Parts => render::matte_parts(&document.scene, frame, parts),
-        Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
-        Picture::Overlay(options) => {
-            let below = sequence.picture(frame)?;
-            render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
-        }
-    };
-    bytes.map_err(|source| PipelineError::Encode { frame, source })
-}
-
-fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Rendering, PipelineError> {
-    let footage = &document.scene.footage;
-    let format = Format::of(Path::new(&job.output))
-        .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
-    let needs_exr = match job.picture {
-        Picture::Layers => Some("layers"),
-        Picture::Parts => Some("several parts"),
-        _ => None,
-    };
-    if let Some(what) = needs_exr.filter(|_| format != Format::Exr) {
-        return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for {what}", job.output)));
-    }
-    let range = frames_of(footage, job.frames.clone())?;
-    let frames: Vec<(FrameNumber, PathBuf)> = match FramePattern::parse(&job.output) {
-        Ok(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
-        Err(PatternError::NoNumber { .. }) if range.start() == range.end() => {
-            vec![(*range.start(), PathBuf::from(&job.output))]
-        }
-        Err(error) => return Err(PipelineError::Request(format!("output {error}"))),
-    };
-    let inputs = Inputs::default().footage(footage, sequence.folder());
-    for (frame, path) in &frames {
-        inputs.check(path).map_err(|error| PipelineError::Request(format!("frame {frame}: {error}")))?;
-    }
-    Ok(Rendering {
-        frames,
-        parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
-        format,
-    })
-}
-
-fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
-    let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::option("parts", error));
-    names.iter().map(index).collect()
 }
 
 /// The frames that an option asks for, or all of the footage.

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws the contours over the footage, the parts' matte, the parts cut out, or a picture of part ids")
+        .about("Draws the contours over the footage, the parts' matte, the parts cut out, a picture of part ids, or painted regions")
         .arg(arguments::project())
         .arg(arguments::output(
             "PATTERN",
@@ -48,6 +48,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             "matte" => Picture::Matte,
             "cutout" => Picture::Cutout,
             "ids" => Picture::Ids,
+            "paint" => Picture::Paint,
+            "painted" => Picture::Painted,
             _ => Picture::Overlay(OverlayOptions {
                 line_width: arguments::number(given, "line_width"),
                 points: arguments::flag(given, "points"),
@@ -58,12 +60,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         parts: given.get_many::<String>("parts").map(|names| names.cloned().collect()),
         output: output.to_owned(),
     };
-    let document = project::load(from)?;
+    let painted = matches!(job.picture, Picture::Paint | Picture::Painted);
+    let document = if painted { project::load_drawn(from)? } else { project::load(from)? };
     check_writable(&probed(output))?;
     progress::run(arguments::threads(given), |bar| {
         pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
     })?;
-    pipeline::untracked(&document.scene).iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));
+    let lacking =
+        if painted { pipeline::unpainted(&document, job.frames.clone()) } else { pipeline::untracked(&document.scene) };
+    lacking.iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }
 

@@ -17,6 +17,7 @@
 //! - [`page`]: a drawing, and clicks that paint it
 //! - [`carry`](mod@carry): colours, numbers and confidence on the next drawing
 //! - [`outlines`]: painted regions as outlines with holes
+//! - [`thin`]: outlines with fewer points, the same for both sides of a border
 //!
 //! Regions are matched as in Sato et al. (*Reference-based manga colorization by graph correspondence using quadratic
 //! programming*, 2014): by themselves and by their neighbours. But a region need not have one counterpart: colours are what is asked
@@ -70,6 +71,7 @@ pub mod page;
 pub mod regions;
 pub mod relax;
 pub mod shifts;
+pub mod thin;
 
 pub use carry::{Source, carry};
 pub use outlines::{Fill, fills};

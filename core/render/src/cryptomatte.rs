@@ -1,4 +1,4 @@
-//! Cryptomatte layers: which parts are in a pixel, and how much of it each covers. A keyer that reads the layers
+//! Cryptomatte layers: which parts (or painted regions) are in a pixel, and how much of it each covers. A keyer that reads the layers
 //! recovers the matte of each part by its name, exactly even at antialiased and overlapping borders.
 //!
 //! The parts of each pixel are ranked by their visible area. A rank consists of two channels: the id of the part and
@@ -15,7 +15,6 @@
 
 use super::layers::{Attribute, Channel};
 use super::visible::{Share, Visible};
-use rototoon_base::scene::Scene;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
@@ -24,13 +23,13 @@ pub const LAYER: &str = "CryptoObject";
 /// Least number of ranks.
 const RANKS: usize = 6;
 
-/// Two parts have the same id, so a keyer cannot distinguish them.
+/// Two names have the same id, so a keyer cannot distinguish them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("parts {first:?} and {second:?} have the same Cryptomatte id: expected another name for one of them")]
+#[error("{first:?} and {second:?} have the same Cryptomatte id: expected another name for one of them")]
 pub struct SameId {
-    /// Name of a part.
+    /// A name.
     pub first: String,
-    /// Name of another part.
+    /// Another one.
     pub second: String,
 }
 
@@ -46,24 +45,20 @@ pub fn id(name: &str) -> u32 {
     if exponent == 0 || exponent == 0xff { hash ^ 1 << 23 } else { hash }
 }
 
-/// The attributes of the file's header: name, rules and manifest of the layers. `parts` selects parts by index; `None`
-/// takes all.
+/// The attributes of the file's header: name, rules and manifest of the layers, with the names of all that may be in them.
 ///
 /// # Errors
 ///
 /// [`SameId`] if two names have the same id.
-pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribute>, SameId> {
+pub fn attributes<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Attribute>, SameId> {
     let mut manifest = serde_json::Map::new();
     let mut ids: BTreeMap<u32, &str> = BTreeMap::new();
-    for (index, part) in scene.parts.iter().enumerate() {
-        if !part.closed || parts.is_some_and(|parts| !parts.contains(&index)) {
-            continue;
+    for name in names {
+        let id = id(name);
+        if let Some(first) = ids.insert(id, name) {
+            return Err(SameId { first: first.to_owned(), second: name.to_owned() });
         }
-        let id = id(&part.name);
-        if let Some(first) = ids.insert(id, &part.name) {
-            return Err(SameId { first: first.to_owned(), second: part.name.clone() });
-        }
-        manifest.insert(part.name.clone(), format!("{id:08x}").into());
+        manifest.insert(name.to_owned(), format!("{id:08x}").into());
     }
     let key = &format!("{:08x}", murmur3(LAYER.as_bytes()))[..7];
     let attribute = |field: &str, value: String| Attribute { name: format!("cryptomatte/{key}/{field}"), value };
@@ -75,9 +70,9 @@ pub fn attributes(scene: &Scene, parts: Option<&[usize]>) -> Result<Vec<Attribut
     ])
 }
 
-/// The channels of all ranks, `width` × `height` values each.
-pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
-    let ids: Vec<f32> = scene.parts.iter().map(|part| f32::from_bits(id(&part.name))).collect();
+/// The channels of all ranks, `width` × `height` values each. `names` are those of the indices in `visible`.
+pub fn channels(names: &[&str], visible: &Visible) -> Vec<Channel> {
+    let ids: Vec<f32> = names.iter().map(|name| f32::from_bits(id(name))).collect();
     let ranks = visible.most().max(RANKS).next_multiple_of(2);
     let count = visible.width() * visible.height();
     let mut channels: Vec<Channel> = (0..ranks / 2)
@@ -102,7 +97,6 @@ pub fn channels(scene: &Scene, visible: &Visible) -> Vec<Channel> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use rototoon_base::scene::{Footage, Part};
 
     #[test]
     fn the_hash_has_its_published_values() {
@@ -117,20 +111,14 @@ mod tests {
     }
 
     #[test]
-    fn the_header_names_every_closed_part() {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 2, height: 2 };
-        let part = |name: &str, closed| Part { name: name.into(), closed, ..Part::default() };
-        let parts = vec![part("near \"arm\"", true), part("line", false), part("été", true)];
-        let mut scene = Scene { footage, parts };
-        let found = attributes(&scene, None).unwrap();
+    fn the_header_names_all() {
+        let found = attributes(["near \"arm\"", "été"].into_iter()).unwrap();
         assert!(found.iter().all(|attribute| attribute.name.len() < 32));
         let manifest: serde_json::Value = serde_json::from_str(&found[3].value).unwrap();
         assert_eq!(manifest.as_object().unwrap().len(), 2);
         assert_eq!(manifest["near \"arm\""], format!("{:08x}", id("near \"arm\"")));
         assert!(found[3].value.contains("été"));
-        scene.parts[2].name = "near \"arm\"".into();
-        assert_eq!(attributes(&scene, None).unwrap_err().second, "near \"arm\"");
-        assert_eq!(attributes(&scene, Some(&[0])).unwrap()[3].value.matches(':').count(), 1);
+        assert_eq!(attributes(["été", "leg", "été"].into_iter()).unwrap_err().second, "été");
     }
 
     proptest! {

@@ -46,12 +46,10 @@ pub fn id_picture(
         return encode::premultiplied(&picture);
     }
     let (width, height) = (picture.width(), picture.height());
-    let attributes = cryptomatte::attributes(scene, parts).map_err(|error| EncodeError {
-        width,
-        height,
-        reason: error.to_string(),
-    })?;
-    let mut channels = cryptomatte::channels(scene, &visible);
+    let names: Vec<&str> = scene.parts.iter().map(|part| &part.name[..]).collect();
+    let attributes = cryptomatte::attributes(closed(scene, parts).map(|index| names[index]))
+        .map_err(|error| EncodeError { width, height, reason: error.to_string() })?;
+    let mut channels = cryptomatte::channels(&names, &visible);
     for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
         let light = |pixel: &[f32; 4]| match (index, pixel[3]) {
             (3, alpha) => alpha,
@@ -268,6 +266,19 @@ mod tests {
                 assert!(channel.sample_data.values_as_f32().eq(expected.data().iter().copied()));
             }
         }
+    }
+
+    #[test]
+    fn the_header_names_the_closed_ones_of_the_parts() {
+        let mut scene = scene(3);
+        scene.parts[1].closed = false;
+        let named = |parts: Option<&[usize]>| {
+            let (_, attributes) = read(&id_picture(&scene, 0, parts, Format::Exr).unwrap());
+            let manifest = attributes.iter().find(|(key, _)| key.ends_with("/manifest")).unwrap().1;
+            serde_json::from_str::<BTreeMap<String, String>>(manifest).unwrap().into_keys().collect::<Vec<_>>()
+        };
+        assert_eq!(named(None), ["part 0.é", "part 2.é"]);
+        assert_eq!(named(Some(&[0, 1])), ["part 0.é"]);
     }
 
     #[test]

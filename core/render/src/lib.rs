@@ -1,4 +1,4 @@
-//! Pictures of what was found: mattes, cut-outs, overlays and id pictures of the parts of a scene.
+//! Pictures of what was found: mattes, cut-outs, overlays and id pictures of the parts of a scene, and painted drawings.
 //!
 //! This crate draws contours that are there already. It finds none, and it decodes no footage (`rototoon-image`).
 //!
@@ -11,6 +11,7 @@
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
 //! - [`cryptomatte`]: the same as ranked ids, for keyers
+//! - [`paint`](mod@paint): painted regions, alone and below their drawing
 //! - [`layers`]: OpenEXR files of any number of named channels
 //! - [`motion`]: contours between frames
 //! - [`grow`]: the outline moved outward or inward
@@ -58,6 +59,7 @@ pub mod matte;
 pub mod motion;
 mod near;
 pub mod overlay;
+pub mod paint;
 pub mod rows;
 pub mod visible;
 pub mod widths;
@@ -66,3 +68,4 @@ pub use encode::{EncodeError, Format};
 pub use ids::{id_picture, matte_layers, matte_parts};
 pub use matte::{cutout, matte};
 pub use overlay::{OverlayOptions, overlay};
+pub use paint::{paint_picture, painted};

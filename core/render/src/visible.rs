@@ -21,7 +21,7 @@ use rototoon_base::scene::{FrameNumber, Raster, Scene};
 /// Number of rows computed together.
 const BAND: i64 = 64;
 /// A smaller share is rounding, not area.
-const LEAST: f32 = 1.0 / (1 << 18) as f32;
+pub(super) const LEAST: f32 = 1.0 / (1 << 18) as f32;
 
 /// The visible share of a part in a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,20 @@ impl Visible {
         self.starts.windows(2).map(|ends| &self.shares[ends[0]..ends[1]])
     }
 
+    /// The shares of a picture that is computed in bands of rows. `shares` gives those of each pixel of a band.
+    pub(super) fn in_bands(width: usize, height: usize, shares: impl Fn(Window) -> Vec<Vec<Share>>) -> Self {
+        let mut result = Self { width, height, starts: vec![0], shares: Vec::new() };
+        result.starts.reserve(width * height);
+        for top in (0..height as i64).step_by(BAND as usize) {
+            let band = Window { left: 0, top, right: width as i64, bottom: (top + BAND).min(height as i64) };
+            for pixel in shares(band) {
+                result.shares.extend(pixel);
+                result.starts.push(result.shares.len());
+            }
+        }
+        result
+    }
+
     /// Greatest number of shares of a pixel.
     pub fn most(&self) -> usize {
         self.pixels().map(<[Share]>::len).max().unwrap_or(0)
@@ -81,7 +95,7 @@ impl Stack {
     /// coordinate that is not finite, are left out.
     pub fn new(outlines: impl IntoIterator<Item = (usize, Vec<Point>)>) -> Self {
         let outline = |(part, points): (usize, Vec<Point>)| {
-            let bounds = bounds(&points)?;
+            let bounds = Window::around(&points)?;
             Some(Outline { part, points, bounds })
         };
         Self(outlines.into_iter().filter_map(outline).collect())
@@ -109,17 +123,9 @@ impl Stack {
 pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Visible {
     let order = nearest_first(scene, parts);
     let stack = Stack::new(order.into_iter().filter_map(|part| Some((part, scene.parts[part].outline(frame)?))));
-    let (width, height) = (scene.footage.width, scene.footage.height);
-    let mut result = Visible { width, height, starts: vec![0], shares: Vec::new() };
-    result.starts.reserve(width * height);
-    for top in (0..height as i64).step_by(BAND as usize) {
-        let band = Window { left: 0, top, right: width as i64, bottom: (top + BAND).min(height as i64) };
-        for pixel in stack.shares(band, &mut || true).into_iter().flatten() {
-            result.shares.extend(pixel);
-            result.starts.push(result.shares.len());
-        }
-    }
-    result
+    Visible::in_bands(scene.footage.width, scene.footage.height, |band| {
+        stack.shares(band, &mut || true).unwrap_or_default()
+    })
 }
 
 /// The indices of closed parts, nearest first. `parts` selects parts by index; `None` takes all.
@@ -130,24 +136,6 @@ pub fn nearest_first(scene: &Scene, parts: Option<&[usize]>) -> Vec<usize> {
     order
 }
 
-fn bounds(points: &[Point]) -> Option<Window> {
-    let whole = points.iter().all(|p| p.is_finite());
-    let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-    // A float beyond the range of integers becomes the largest integer.
-    (whole && !points.is_empty()).then(|| Window {
-        left: least.x.floor() as i64,
-        top: least.y.floor() as i64,
-        right: most.x.ceil() as i64,
-        bottom: most.y.ceil() as i64,
-    })
-}
-
-fn common(a: Window, b: Window) -> Option<Window> {
-    let (left, top) = (a.left.max(b.left), a.top.max(b.top));
-    let (right, bottom) = (a.right.min(b.right), a.bottom.min(b.bottom));
-    (left < right && top < bottom).then_some(Window { left, top, right, bottom })
-}
-
 /// The shares of each pixel of a band.
 fn shares(outlines: &[Outline], band: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Vec<Share>>> {
     let mut pixels = Pixels {
@@ -156,7 +144,7 @@ fn shares(outlines: &[Outline], band: Window, go_on: &mut dyn FnMut() -> bool) -
         covered: Raster::new(band.width(), band.height(), 0.0f32),
     };
     for (index, outline) in outlines.iter().enumerate() {
-        let Some(window) = common(outline.bounds, band) else { continue };
+        let Some(window) = outline.bounds.common(band) else { continue };
         let mut union = Union { outlines, of: Vec::new(), shape: Shape::new(&[]) };
         let own = Shape::new(&[vec![outline.points.clone()]]).draw(window, go_on)?;
         for (row, y) in (window.top..window.bottom).enumerate() {

@@ -188,7 +188,7 @@ fn clicks(document: &Document) -> Result<Vec<(usize, FillClicks)>, PipelineError
 }
 
 /// The error of a field.
-fn field(error: &dyn std::fmt::Display) -> PipelineError {
+pub(super) fn field(error: &dyn std::fmt::Display) -> PipelineError {
     PipelineError::Field(error.to_string())
 }
 

@@ -151,7 +151,7 @@ pub const ALL: [Parameter; 14] = [
         id: "what",
         label: "What",
         help: "The picture to render: contours over the footage, the matte of the closed parts, \
-               the footage cut out by them, or a colour for each part.",
+               the footage cut out by them, a colour for each part, painted regions, or the drawing over its paint.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
@@ -160,6 +160,8 @@ pub const ALL: [Parameter; 14] = [
                 choice("matte", "Matte of the closed parts"),
                 choice("cutout", "Footage within the closed parts"),
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
+                choice("paint", "Painted regions alone; in OpenEXR also Cryptomatte layers"),
+                choice("painted", "The drawing over its painted regions"),
             ],
         },
     },

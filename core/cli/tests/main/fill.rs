@@ -88,3 +88,63 @@ fn clicks_that_paint_nothing_are_named() {
     let expected = "note: fills[0].regions[3].at lies on a line or outside of the picture, so it paints nothing";
     assert!(told(&output).contains(expected), "{}", told(&output));
 }
+
+#[test]
+fn painted_regions_are_rendered_alone_and_under_the_drawing() {
+    let (folder, path) = project(clicks());
+    let (out, at) = (folder.path().join("painted.json"), |name: &str| folder.path().join(name));
+    assert!(run("fill", &path, &out, &[]).status.success());
+    let rendered = |what: &str, name: &str| {
+        let output = run("render", &out, &at(name), &["--what", what]);
+        assert!(output.status.success() && told(&output).is_empty(), "{}", told(&output));
+    };
+    rendered("paint", "paint_%d.png");
+    rendered("painted", "painted_%d.png");
+    rendered("paint", "paint_%d.exr");
+    let open = |name: &str| image::open(at(name)).unwrap();
+    let (paint, painted) = (open("paint_2.png").to_rgba8(), open("painted_2.png").to_rgba8());
+    let drawing = open("f_002.png").to_rgba8();
+    // On frame 2 everything is 8 px to the right.
+    for (x, y, expected) in [(3, 3, [255, 255, 255, 255]), (38, 60, [230, 51, 26, 255]), (68, 60, [26, 51, 230, 255])] {
+        assert_eq!(paint.get_pixel(x, y).0, expected, "{x} {y}");
+        let over = painted.get_pixel(x, y).0;
+        assert!((0..4).all(|k| over[k].abs_diff(expected[k]) < 8), "paper leaves the paint: {over:?} {expected:?}");
+    }
+    // The lines of so small a picture are thick for it, and paint does not reach the middle of the four corners.
+    let open = paint.pixels().filter(|pixel| pixel.0[3] < 255).count();
+    assert!(open <= 16, "regions meet under the lines, without a seam: {open}");
+    for (over, line) in painted.pixels().zip(drawing.pixels()) {
+        assert!(over.0[0] <= line.0[0].max(1), "ink stays ink: {over:?} {line:?}");
+    }
+    let light = open("paint_2.exr").to_rgba32f().get_pixel(38, 60).0;
+    let red = ((230.0f32 / 255.0 + 0.055) / 1.055).powf(2.4);
+    assert!((light[0] - red).abs() < 0.01 && light[3] == 1.0, "{light:?}");
+}
+
+#[test]
+fn what_was_not_painted_is_told_when_it_is_rendered() {
+    let (folder, path) = project(clicks());
+    let (some, to) = (folder.path().join("some.json"), folder.path().join("paint_%d.png"));
+    let output = run("render", &path, &to, &["--what", "paint"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        told(&output).contains("filled: found no painted regions, expected those that `rototoon fill`"),
+        "{}",
+        told(&output)
+    );
+    assert!(run("fill", &path, &some, &["--frames", "0-1"]).status.success());
+    let output = run("render", &some, &to, &["--what", "paint"]);
+    assert!(output.status.success());
+    assert!(told(&output).contains("frames 2, 3: not painted; run `rototoon fill` on them"), "{}", told(&output));
+    let empty = image::open(folder.path().join("paint_3.png")).unwrap().to_rgba8();
+    assert!(empty.pixels().all(|pixel| pixel.0 == [0; 4]));
+    let output = run("render", &some, &to, &["--what", "paint", "--frames", "0-1"]);
+    assert!(output.status.success() && told(&output).is_empty(), "{}", told(&output));
+    let output = run("render", &some, &to, &["--what", "paint", "--parts", "arm"]);
+    assert!(!output.status.success());
+    assert!(
+        told(&output).contains("found \"arm\", expected none: painted regions belong to no part"),
+        "{}",
+        told(&output)
+    );
+}

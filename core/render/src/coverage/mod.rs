@@ -66,6 +66,26 @@ impl Window {
         Self { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
     }
 
+    /// The smallest window around some points; `None` if there are none or a coordinate is not finite.
+    pub(super) fn around(points: &[Point]) -> Option<Self> {
+        let whole = points.iter().all(|p| p.is_finite());
+        let (least, most) = points.iter().fold((Point::MAX, Point::MIN), |(a, b), &p| (a.min(p), b.max(p)));
+        // A float beyond the range of integers becomes the largest integer.
+        (whole && !points.is_empty()).then(|| Self {
+            left: least.x.floor() as i64,
+            top: least.y.floor() as i64,
+            right: most.x.ceil() as i64,
+            bottom: most.y.ceil() as i64,
+        })
+    }
+
+    /// The pixels that both windows have; `None` if there are none.
+    pub(super) fn common(self, other: Self) -> Option<Self> {
+        let (left, top) = (self.left.max(other.left), self.top.max(other.top));
+        let (right, bottom) = (self.right.min(other.right), self.bottom.min(other.bottom));
+        (left < right && top < bottom).then_some(Self { left, top, right, bottom })
+    }
+
     /// The window with rows and columns exchanged.
     pub(super) fn transposed(&self) -> Self {
         Self { left: self.top, top: self.left, right: self.bottom, bottom: self.right }

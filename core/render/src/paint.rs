@@ -1,0 +1,218 @@
+//! Painted regions of a drawing: as a picture with alpha, below the drawing, and as ids for keyers.
+//!
+//! Regions of a drawing lie side by side, and their outlines meet in the middle of the line between them. Drawn one over the
+//! other with opacities, they would leave seams there: two halves of a pixel cover three quarters of it. So shares of a
+//! pixel are areas, and they add up. From the front to the back, each region gets its own area, but no more than the
+//! regions before it leave. Where regions do not overlap within a pixel, and wherever one of them covers it, that is exact. Where the
+//! borders of overlapping regions cross in one pixel, the farther one may get some of the area behind the nearer one.
+//! (OpenGL has the same rule under the name *saturate*: Segal & Akeley, The OpenGL Graphics System, section on blending.)
+//!
+//! A region's area is that of its outline minus that of its holes ([`super::coverage`]). Colours are mixed in linear light.
+//!
+//! The drawing lies over its paint as with the mode *multiply* of other programs (W3C, Compositing and Blending Level 1,
+//! equation for `multiply` with alpha): ink darkens the paint below it, white paper leaves it, and where nothing is painted the
+//! drawing is as it is. Limits: grey paper darkens the paint too.
+
+use super::coverage::{Shape, Window};
+use super::cryptomatte;
+use super::encode::{self, EncodeError, Format};
+use super::layers::{self, Channel};
+use super::visible::{LEAST, Share, Visible};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Colour, Raster};
+use rototoon_image::colour;
+
+/// A painted region on one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Region {
+    /// Its name in Cryptomatte layers. A region has the same name on all frames.
+    pub name: String,
+    /// Its closed outline, in pixels of the picture.
+    pub outline: Vec<Point>,
+    /// The closed outlines of its holes, inside of `outline`.
+    pub holes: Vec<Vec<Point>>,
+    /// Its colour, sRGB-encoded, 0 to 1.
+    pub colour: Colour,
+}
+
+/// The share of each region in each pixel of a picture. Regions go from the back to the front; a share's `part` is an index of them.
+pub fn shares(regions: &[Region], width: usize, height: usize) -> Visible {
+    Visible::in_bands(width, height, |band| {
+        let mut shown = vec![Vec::new(); band.width() * band.height()];
+        let mut left = vec![1.0f32; shown.len()];
+        for (part, region) in regions.iter().enumerate().rev() {
+            let Some((window, own)) = area(region, band) else { continue };
+            for y in window.top..window.bottom {
+                let first = (y - band.top) as usize * band.width() + window.left as usize;
+                for (x, own) in own.row((y - window.top) as usize).iter().enumerate() {
+                    let coverage = own.min(left[first + x]);
+                    if coverage >= LEAST {
+                        left[first + x] -= coverage;
+                        shown[first + x].push(Share { part, coverage });
+                    }
+                }
+            }
+        }
+        shown
+    })
+}
+
+/// The area of a region in each pixel of the part of a band that contains it.
+fn area(region: &Region, band: Window) -> Option<(Window, Raster<f32>)> {
+    let window = Window::around(&region.outline)?.common(band)?;
+    let draw = |polygons: Vec<Vec<Point>>| Shape::new(&[polygons]).draw(window, &mut || true);
+    let mut own = draw(vec![region.outline.clone()])?;
+    if !region.holes.is_empty() {
+        let holes = draw(region.holes.clone())?;
+        own.data_mut().iter_mut().zip(holes.data()).for_each(|(own, hole)| *own = (*own - hole).max(0.0));
+    }
+    Some((window, own))
+}
+
+/// The paint alone: linear light multiplied by alpha, and alpha.
+pub fn paint(regions: &[Region], shares: &Visible) -> Raster<[f32; 4]> {
+    let colours: Vec<[f32; 3]> = regions.iter().map(|region| region.colour.map(colour::decode)).collect();
+    let mut pixels = shares.pixels();
+    Raster::from_fn(shares.width(), shares.height(), |_, _| {
+        let mut sum = [0.0; 4];
+        for share in pixels.next().unwrap_or(&[]) {
+            let [r, g, b] = colours[share.part];
+            for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
+                *sum += share.coverage * value;
+            }
+        }
+        sum
+    })
+}
+
+/// A drawing over its paint, both as linear light multiplied by alpha, and alpha.
+pub fn painted(drawing: &Raster<[f32; 4]>, paint: &Raster<[f32; 4]>) -> Raster<[f32; 4]> {
+    Raster::from_fn(drawing.width(), drawing.height(), |x, y| {
+        let (over, below) = (drawing.get(x, y), paint.get(x, y));
+        let (a, b) = (over[3], below[3]);
+        let mixed = |k: usize| over[k] * (1.0 - b) + below[k] * (1.0 - a) + over[k] * below[k];
+        [mixed(0), mixed(1), mixed(2), a + b - a * b]
+    })
+}
+
+/// Encodes the paint alone. In OpenEXR Cryptomatte layers of the regions accompany it.
+///
+/// # Errors
+///
+/// An [`EncodeError`] if encoding fails or two regions have the same Cryptomatte id.
+pub fn paint_picture(regions: &[Region], width: usize, height: usize, format: Format) -> Result<Vec<u8>, EncodeError> {
+    let shares = shares(regions, width, height);
+    let picture = paint(regions, &shares);
+    if format == Format::Png {
+        return encode::layer(&picture, format);
+    }
+    let names: Vec<&str> = regions.iter().map(|region| &region.name[..]).collect();
+    let attributes = cryptomatte::attributes(names.iter().copied()).map_err(|error| EncodeError {
+        width,
+        height,
+        reason: error.to_string(),
+    })?;
+    let mut channels = cryptomatte::channels(&names, &shares);
+    for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+        let values = picture.data().iter().map(|pixel| pixel[index]).collect();
+        channels.push(Channel { name: name.to_owned(), values });
+    }
+    layers::encode(width, height, channels, &attributes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const RED: Colour = [1.0, 0.0, 0.0];
+    const GREY: Colour = [0.5, 0.5, 0.5];
+
+    fn rectangle(x0: f64, y0: f64, x1: f64, y1: f64) -> Vec<Point> {
+        vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]
+    }
+
+    fn region(outline: Vec<Point>, colour: Colour) -> Region {
+        Region { name: "region".into(), outline, holes: Vec::new(), colour }
+    }
+
+    fn picture(regions: &[Region], width: usize, height: usize) -> Raster<[f32; 4]> {
+        paint(regions, &shares(regions, width, height))
+    }
+
+    #[test]
+    fn regions_that_touch_leave_no_seam() {
+        let regions = [region(rectangle(0.0, 0.0, 1.25, 1.0), RED), region(rectangle(1.25, 0.0, 3.0, 1.0), GREY)];
+        let found = picture(&regions, 3, 1);
+        let grey = colour::decode(0.5);
+        assert_eq!(found.get(0, 0), [1.0, 0.0, 0.0, 1.0]);
+        let mixed = found.get(1, 0);
+        for (found, expected) in mixed.into_iter().zip([0.25 + 0.75 * grey, 0.75 * grey, 0.75 * grey, 1.0]) {
+            assert!((found - expected).abs() < 1e-6, "{mixed:?}");
+        }
+    }
+
+    #[test]
+    fn later_regions_lie_over_earlier_ones_and_holes_show_what_is_behind() {
+        let mut front = region(rectangle(0.0, 0.0, 5.0, 5.0), RED);
+        front.holes = vec![rectangle(2.0, 2.0, 3.5, 3.0)];
+        let found = picture(&[region(rectangle(0.0, 0.0, 3.0, 5.0), GREY), front.clone()], 5, 5);
+        assert_eq!(found.get(1, 1), [1.0, 0.0, 0.0, 1.0], "the front one hides");
+        let grey = colour::decode(0.5);
+        assert_eq!(found.get(2, 2), [grey, grey, grey, 1.0], "the hole shows the one behind");
+        assert_eq!(found.get(3, 2), [0.5, 0.0, 0.0, 0.5], "half a hole with nothing behind");
+        // A hole beyond the outline takes nothing from others.
+        front.holes = vec![rectangle(4.0, 0.0, 9.0, 5.0)];
+        assert_eq!(picture(&[front], 6, 5).get(5, 2), [0.0; 4]);
+    }
+
+    #[test]
+    fn regions_of_any_size_and_place_are_drawn() {
+        for outline in
+            [vec![], vec![Point::new(1.0, 1.0)], rectangle(-9.0, -9.0, -1.0, -1.0), rectangle(9.0, 0.0, 12.0, 9.0)]
+        {
+            assert!(picture(&[region(outline, RED)], 4, 4).data().iter().all(|pixel| *pixel == [0.0; 4]));
+        }
+        let beyond = picture(&[region(rectangle(-9.0, -9.0, 99.0, 199.0), RED)], 4, 70);
+        assert!(beyond.data().iter().all(|pixel| *pixel == [1.0, 0.0, 0.0, 1.0]));
+        let wrong = vec![Point::new(0.0, 0.0), Point::new(f64::NAN, 0.0), Point::new(3.0, 3.0)];
+        assert!(picture(&[region(wrong, RED)], 4, 4).data().iter().all(|pixel| *pixel == [0.0; 4]));
+    }
+
+    #[test]
+    fn ink_darkens_paint_and_paper_leaves_it() {
+        let over = |drawing: [f32; 4], paint: [f32; 4]| {
+            painted(&Raster::new(1, 1, drawing), &Raster::new(1, 1, paint)).get(0, 0)
+        };
+        let (white, black, none, paint) = ([1.0; 4], [0.0, 0.0, 0.0, 1.0], [0.0; 4], [0.2, 0.4, 0.6, 1.0]);
+        assert_eq!(over(white, paint), paint);
+        assert_eq!(over(black, paint), black);
+        assert_eq!(over(none, paint), paint, "a drawing on transparent paper");
+        assert_eq!(over([0.5, 0.5, 0.5, 1.0], paint), [0.1, 0.2, 0.3, 1.0]);
+        assert_eq!(over(white, none), white, "nothing is painted there");
+        assert_eq!(over([0.1, 0.2, 0.3, 0.5], none), [0.1, 0.2, 0.3, 0.5]);
+        assert_eq!(over([0.0, 0.0, 0.0, 0.5], paint), [0.1, 0.2, 0.3, 1.0], "half of black ink");
+    }
+
+    proptest! {
+        #[test]
+        fn a_drawing_cut_into_regions_is_painted_whole(
+            cuts in prop::collection::vec((0.0f64..9.0, 0.0f64..70.0), 1..5), slant in -3.0f64..3.0,
+        ) {
+            // Slanted strips from the left to the right, cut at a height each.
+            let (mut regions, mut x) = (Vec::new(), -4.0);
+            for (step, y) in cuts.into_iter().chain([(40.0, 35.0)]) {
+                let strip = |x: f64| [Point::new(x - slant, 0.0), Point::new(x + slant, 70.0)];
+                let ([a, d], [b, c]) = (strip(x), strip(x + step));
+                let [m, n] = [(a, d), (b, c)].map(|(top, bottom)| top.lerp(bottom, y / 70.0));
+                regions.extend([region(vec![a, b, n, m], RED), region(vec![m, n, c, d], GREY)]);
+                x += step;
+            }
+            let shares = shares(&regions, 12, 70);
+            for (at, pixel) in shares.pixels().enumerate().filter(|(at, _)| (3..9).contains(&(at % 12))) {
+                let sum: f32 = pixel.iter().map(|share| share.coverage).sum();
+                prop_assert!((sum - 1.0).abs() < 1e-4, "{at}: {sum}");
+            }
+        }
+    }
+}
