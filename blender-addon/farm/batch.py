@@ -5,7 +5,7 @@
     rototoon-batch.js    the job type for Flamenco
     send_to_opencue.py   sends the job to OpenCue
     shots/NAME.json      a project document for each shot
-    sent.json            which object of which file each shot is; the hash of each file
+    sent.json            which object of which file each shot is, and the layers of its lines; the hash of each file
     results/             where the results will be
 
 A file is only replaced if it is as it was written here. So nothing that somebody made or changed is lost.
@@ -66,10 +66,7 @@ def write(folder: str, shots: Sequence[Mapping[str, Any]], choices: Choices) -> 
     known = {name: list(hashes) for name, hashes in before.get("files", {}).items()}
     for name in wanted:
         _need_own(place / name, known.get(name))
-    listed = [
-        {"shot": name, "object": shot["object"], "blend": _relative(place, shot["blend"])}
-        for name, shot in zip(names, shots, strict=True)
-    ]
+    listed = [_listed(place, name, shot) for name, shot in zip(names, shots, strict=True)]
     new = {name: [_hash(content.encode())] for name, content in wanted.items()}
     # First with the old files too, so that a second try knows all files of one that was ended.
     for hashes in ({name: known.get(name, []) + new.get(name, []) for name in known | new}, known | new):
@@ -78,6 +75,12 @@ def write(folder: str, shots: Sequence[Mapping[str, Any]], choices: Choices) -> 
             _put(place / name, content)
         wanted = {}
     return names
+
+
+def _listed(place: Path, name: str, shot: Mapping[str, Any]) -> dict[str, Any]:
+    """What Collect Results needs to know of a shot."""
+    entry = {"shot": name, "object": shot["object"], "blend": _relative(place, shot["blend"])}
+    return entry | {"lines": shot["lines"]} if "lines" in shot else entry
 
 
 def shot_names(shots: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -106,8 +109,9 @@ def _manifest(place: Path, names: Sequence[str], shots: Sequence[Mapping[str, An
         if shot["blend"]:
             entry["blend"] = _relative(place, shot["blend"])
         steps = _steps(choices, shot["preset"], bool(shot["document"]["parts"]))
-        if "paint" in shot:
-            steps.append({"do": "fill", **shot["paint"]})
+        for do, name in (("trace", "trace"), ("fill", "paint")):
+            if name in shot:
+                steps.append({"do": do, **shot[name]})
         if steps != _steps(choices, _DEFAULT):
             entry["steps"] = steps
         entries.append(entry)

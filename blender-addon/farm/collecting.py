@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from ..blender.errors import Problem
 from ..capture import contours, document, ends, identity, sessions, snapping, tracking, writing
 from ..capture.document import Reading
 from ..exchange import files
+from ..exchange.fields import wrong
 from . import batch
 
 RECORD = "batch.json"
@@ -43,6 +44,10 @@ class Result:
     object: str
     document: dict[str, Any] | None
     failure: str = ""
+    lines: dict[str, Any] | None = None
+    """How its lines were sent: `layers`, `home`, `new` and `hold`. `None` if no lines were sent."""
+    held: set[int] = field(default_factory=set)
+    """The pictures that are the same as the one before, where lines hold their drawings."""
 
 
 @dataclass
@@ -64,12 +69,30 @@ def results_of(folder: str, path: str) -> list[Result]:
     if not (place / batch.SENT).exists():
         raise Problem(f"No {batch.SENT} in {folder}: choose the folder that Send to Farm wrote to")
     found = []
-    for entry in batch.read_sent(place / batch.SENT)["shots"]:
+    for index, entry in enumerate(batch.read_sent(place / batch.SENT)["shots"]):
         blend = entry.get("blend", "")
         # The farm may see the file under another path.
         if not path or not blend or os.path.basename(blend) == os.path.basename(path):
-            found.append(_result(place / batch.RESULTS / str(entry.get("shot")), entry))
+            lines = _lines_of(entry, f"{place / batch.SENT}: shots[{index}].lines")
+            found.append(replace(_result(place / batch.RESULTS / str(entry.get("shot")), entry), lines=lines))
     return found
+
+
+def _lines_of(entry: Mapping[str, Any], place: str) -> dict[str, Any] | None:
+    lines = entry.get("lines")
+    if lines is None:
+        return None
+    if not isinstance(lines, dict):
+        raise wrong(place, lines, "an object with layers, home, new and hold")
+    layers = lines.get("layers")
+    if not isinstance(layers, list) or not layers or not all(isinstance(name, str) for name in layers):
+        raise wrong(f"{place}.layers", layers, "names of layers")
+    if lines.get("home") not in layers:
+        raise wrong(f"{place}.home", lines.get("home"), "one of the layers")
+    for name in ("new", "hold"):
+        if not isinstance(lines.get(name), bool):
+            raise wrong(f"{place}.{name}", lines.get(name), "true or false")
+    return lines
 
 
 def _result(folder: Path, entry: Mapping[str, Any]) -> Result:
@@ -127,9 +150,9 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     return taken
 
 
-def need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any]) -> None:
-    """Raises a `Problem` if the result is of pictures of another size."""
-    for name in ("width", "height"):
+def need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any], names: Sequence[str] = ("width", "height")) -> None:
+    """Raises a `Problem` if the result is of pictures of another size. `names` are the fields of the footage that must be the same."""
+    for name in names:
         if now[name] != sent[name]:
             raise Problem(f'"{ob.name}" has other footage than what was sent ({name} {now[name]}, not {sent[name]}): send it again')
 

@@ -8,12 +8,14 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import bpy
 
 from ..blender.errors import Problem
+from .tracing import Wanted
 
 MODULE = __package__.rpartition(".")[0]
 """The add-on's name."""
@@ -31,14 +33,14 @@ def blend_files(folder: str) -> list[str]:
     return found
 
 
-def shots_of(paths: list[str], progress: Callable[[float, str], bool]) -> tuple[list[dict[str, Any]], list[str]]:
+def shots_of(paths: list[str], lines: Wanted, progress: Callable[[float, str], bool]) -> tuple[list[dict[str, Any]], list[str]]:
     """Shots of all files, and what was left out. May run in a thread. A file that cannot be read does not stop the others."""
     shots: list[dict[str, Any]] = []
     left: list[str] = []
     for index, path in enumerate(paths):
         name = os.path.basename(path)
         going = progress(index / len(paths), name)
-        found = _read(path, lambda: progress(index / len(paths), name)) if going else None
+        found = _read(path, lines, lambda: progress(index / len(paths), name)) if going else None
         if found is None:
             return [], []
         shots += found["shots"]
@@ -46,11 +48,11 @@ def shots_of(paths: list[str], progress: Callable[[float, str], bool]) -> tuple[
     return shots, left
 
 
-def _read(path: str, going: Callable[[], bool]) -> dict[str, Any] | None:
+def _read(path: str, lines: Wanted, going: Callable[[], bool]) -> dict[str, Any] | None:
     """What `read_file` writes about a file; `None` if it was stopped."""
     with tempfile.TemporaryDirectory() as folder:
         out, log = os.path.join(folder, "shots.json"), os.path.join(folder, "log.txt")
-        words = ["--", MODULE, path, out]
+        words = ["--", MODULE, path, out, json.dumps(asdict(lines))]
         if bpy.app.binary_path:
             start = [bpy.app.binary_path, "--background", path, "--python-exit-code", "1", "--python", str(_SCRIPT)]
         else:

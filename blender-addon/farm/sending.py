@@ -1,4 +1,4 @@
-"""The contours and the paint of objects as shots of a batch."""
+"""The contours, the lines and the paint of objects as shots of a batch."""
 
 from __future__ import annotations
 
@@ -14,45 +14,78 @@ from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..capture import document, tracking
 from ..common.operators import OnContours
-from . import painting
+from . import painting, tracing
 
 
-def shots_of(objects: Iterable[bpy.types.Object], path: str) -> tuple[list[dict[str, Any]], list[str]]:
-    """Shots of all objects that can be tracked or painted, and why others were left out. `path` is the Blender file; empty if it was never
-    saved. Changes nothing.
+def shots_of(objects: Iterable[bpy.types.Object], path: str, lines: tracing.Wanted) -> tuple[list[dict[str, Any]], list[str]]:
+    """Shots of all objects that can be tracked, traced or painted, and why others were left out. `path` is the Blender file; empty if it was
+    never saved. Changes nothing.
 
-    A shot is plain data, so that it can come from another process: `object`, `blend`, `preset` and `document`, and `paint`, the options of the
-    step `fill`, where there is paint.
+    A shot is plain data, so that it can come from another process: `object`, `blend`, `preset` and `document`; `trace` and `lines` as in
+    `tracing.sent` where there are lines; `paint`, the options of the step `fill`, where there is paint. An object has further shots where its
+    lines need them.
     """
     shots, left = [], []
     for ob in sorted(objects, key=lambda ob: ob.name):
         if not gp.is_drawing(ob) or not ob.rototoon.pattern:
             continue
-        found, problems = _contents(ob)
+        contents, problems = _contents(ob, lines)
         left += [f'"{ob.name}": {problem}' for problem in problems]
-        if found:
-            shots.append({"object": ob.name, "blend": path, "preset": ob.rototoon.preset, **found})
+        shots += [{"object": ob.name, "blend": path, "preset": ob.rototoon.preset, **content} for content in contents]
     return shots, left
 
 
-def _contents(ob) -> tuple[dict[str, Any], list[str]]:
-    """What a shot has of an object, and why something was left out. Without contours, paint alone is sent."""
-    found, problems = {}, []
+def _contents(ob, lines: tracing.Wanted) -> tuple[list[dict[str, Any]], list[str]]:
+    """What the shots of an object have, and why something was left out. An object without contours has lines and paint alone."""
+    found: list[dict[str, Any]] = []
+    why, problems = "", []
     try:
-        found["document"] = _document(ob)
+        found.append({"document": _document(ob)})
     except (Problem, RototoonError) as problem:
-        problems.append(str(problem))
+        why = str(problem)
+    traced, problem = _lines(ob, lines)
+    problems += [f"its lines: {problem}"] if problem else []
+    if traced:
+        found[:1] = [_joined(found, traced[0], "drawings")]
+        found += traced[1:]
+    paint, problem = _paint(ob)
+    problems += [f"its paint: {problem}"] if problem else []
+    if paint:
+        found[:1] = [_joined(found, paint, "fills")]
+    if why and (not found or _has_contours(ob)):
+        problems.insert(0, why)
+    return found, problems
+
+
+def _joined(found: list[dict[str, Any]], more: dict[str, Any], field: str) -> dict[str, Any]:
+    """The first shot with the content `more` and the field `field` of its document."""
+    if not found:
+        return more
+    document = found[0]["document"] | {field: more["document"][field]}
+    return found[0] | more | {"document": document}
+
+
+def _lines(ob, wanted: tracing.Wanted) -> tuple[list[dict[str, Any]], str]:
+    """What is sent of an object's lines, and what was left out."""
+    try:
+        shots, left = tracing.sent(ob, wanted)
+        for shot in shots:
+            _need_picture(shot["document"])
+    except (Problem, RototoonError) as problem:
+        return [], str(problem)
+    return shots, left
+
+
+def _paint(ob) -> tuple[dict[str, Any], str]:
+    """What is sent of an object's paint, and why nothing can be."""
     try:
         paint = painting.sent(ob)
         if paint is None:
-            return found, problems
+            return {}, ""
         _need_picture(paint[0])
     except (Problem, RototoonError) as problem:
-        return found, [*problems, f"its paint: {problem}"]
-    if "document" not in found and not _has_contours(ob):
-        problems = []
-    found.setdefault("document", paint[0])["fills"] = paint[0]["fills"]
-    return found | {"paint": paint[1]}, problems
+        return {}, str(problem)
+    return {"document": paint[0], "paint": paint[1]}, ""
 
 
 def _has_contours(ob) -> bool:

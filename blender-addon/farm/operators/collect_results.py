@@ -1,15 +1,21 @@
-"""Collect Results: takes finished tracks and paint of a batch in."""
+"""Collect Results: takes finished tracks, lines and paint of a batch in."""
 
-from collections.abc import Mapping
-from typing import Any
+from contextlib import suppress
+from dataclasses import dataclass, field
 
 import bpy
 
+from ...blender import footage
+from ...blender import grease_pencil as gp
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
 from ...common.wording import counted, listed
-from .. import collecting, painting
+from ...lines import doubts
+from ...lines import tracing as lines_tracing
+from ...lines.operators.tracing_base import where_to_look
+from ...paint import filling
+from .. import collecting, painting, tracing
 from .send_to_farm import folder_of
 
 NAMED = 3
@@ -20,8 +26,9 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
     bl_idname = "rototoon.collect_results"
     bl_label = "Collect Results"
     bl_description = (
-        "Take the tracks, snapped lines and paint of a batch into the objects that were sent. What you changed since then stays: there the results "
-        "are left out, and Track or Fill Drawings makes them anew. Contours on hidden layers are taken too, locked layers are not changed"
+        "Take the tracks, snapped and traced lines and paint of a batch into the objects that were sent. What you changed since then stays: there the "
+        "results are left out, and Track, Trace Drawing, Carry Strokes or Fill Drawings makes them anew. Contours on hidden layers are taken too, locked "
+        "layers are not changed"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -36,31 +43,62 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
 
     def begin(self, context):
         folder = folder_of(self.directory, "Choose the folder that Send to Farm wrote to")
-        self._scene, path = context.scene, bpy.data.filepath
-        return jobs.Worker(lambda _progress: collecting.results_of(folder, path))
+        self._scene, path, patterns = context.scene, bpy.data.filepath, _patterns(context.scene)
+
+        def read(_progress) -> list[collecting.Result]:
+            results = collecting.results_of(folder, path)
+            tracing.find_held(results, patterns)
+            return results
+
+        return jobs.Worker(read)
 
     def finish(self, _context, work):
         results = work.result
         if not results:
             raise Problem("This file has no shot in the batch: open one of the files that were sent")
-        shots = contours = regions = 0
+        found = _Found()
         failed: list[str] = []
         for result in results:
             ob = self._scene.objects.get(result.object)
             why = result.failure if result.document is None else "" if ob is not None else "no such object in the scene"
-            whys, taken, painted = ([why], None, None) if why else (yield from _take(ob, result.document))
+            whys = [why] if why else (yield from self._take(ob, result, found))
             failed += [f'"{result.object}": {why}' for why in whys]
-            if taken is not None:
-                contours += taken.contours
-                self._say_kept(result.object, taken)
-            regions += painted.regions if painted is not None else 0
-            shots += taken is not None or painted is not None
-        if not shots:
+        if not found.objects:
             raise Problem("Nothing was taken: " + "; ".join(failed))
         self.warn("; ".join(failed))
-        found = [counted(contours, "contour")] if contours or not regions else []
-        found += [counted(regions, "painted region")] if regions else []
-        return f"{' and '.join(found)} taken into {counted(shots, 'object')}"
+        return str(found)
+
+    def _take(self, ob, result: collecting.Result, found: "_Found"):
+        """Takes contours, lines and paint in, each though the others could not be taken. Returns why something was not."""
+        works = []
+        if result.document.get("parts"):
+            works.append((collecting.collecting(ob, result.document), self._count_contours))
+        if result.lines:
+            works.append((tracing.taking(ob, result), self._count_lines))
+        if result.document.get("filled"):
+            works.append((painting.taking(ob, result.document), self._count_paint))
+        failed = [] if works else ["its result is empty"]
+        for work, count in works:
+            try:
+                done = yield from work
+            except Problem as problem:
+                failed.append(str(problem))
+                continue
+            found.objects.add(ob.name)
+            count(ob.name, done, found)
+        return failed
+
+    def _count_contours(self, name: str, taken: collecting.Taken, found: "_Found") -> None:
+        found.contours += taken.contours
+        self._say_kept(name, taken)
+
+    def _count_lines(self, name: str, done: lines_tracing.Done, found: "_Found") -> None:
+        found.strokes += len(done.numbers)
+        for text in (where_to_look(done), doubts.told(done.confidence)):
+            self.warn(f'"{name}": {text}' if text else "")
+
+    def _count_paint(self, _name: str, done: filling.Done, found: "_Found") -> None:
+        found.regions += done.regions
 
     def _say_kept(self, name: str, taken: collecting.Taken) -> None:
         said = [f'"{part}" on {listed(frames)}' for part, frames in taken.kept.items()]
@@ -71,22 +109,31 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         self.warn(taken.left)
 
 
-def _take(ob, result: Mapping[str, Any]):
-    """Takes contours and paint in, each though the other could not be taken. Returns why something was not, and what was taken of each."""
-    works = []
-    if result.get("parts"):
-        works.append(collecting.collecting)
-    if result.get("filled"):
-        works.append(painting.taking)
-    failed, taken = [], {}
-    for work in works:
-        try:
-            taken[work] = yield from work(ob, result)
-        except Problem as problem:
-            failed.append(str(problem))
-    if not works:
-        failed.append("its result is empty")
-    return failed, taken.get(collecting.collecting), taken.get(painting.taking)
+@dataclass
+class _Found:
+    """What was taken."""
+
+    contours: int = 0
+    strokes: int = 0
+    regions: int = 0
+    objects: set[str] = field(default_factory=set)
+
+    def __str__(self) -> str:
+        """What the artist is told."""
+        nouns = (self.contours, "contour"), (self.strokes, "traced stroke"), (self.regions, "painted region")
+        said = [counted(number, noun) for number, noun in nouns if number] or [counted(0, "contour")]
+        told = ", ".join(said[:-1]) + " and " + said[-1] if len(said) > 1 else said[0]
+        return f"{told} taken into {counted(len(self.objects), 'object')}"
+
+
+def _patterns(scene) -> dict[str, str]:
+    """The footage of the objects of a scene whose pictures are there."""
+    found = {}
+    for ob in scene.objects:
+        if gp.is_drawing(ob) and ob.rototoon.pattern:
+            with suppress(Problem):
+                found[ob.name] = footage.pattern_of(ob)
+    return found
 
 
 CLASSES = (ROTOTOON_OT_collect_results,)

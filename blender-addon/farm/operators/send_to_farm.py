@@ -1,4 +1,4 @@
-"""Send to Farm: writes the contours of many shots as a batch."""
+"""Send to Farm: writes the contours, the lines and the paint of many shots as a batch."""
 
 import os
 
@@ -9,7 +9,7 @@ from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
 from ...common.wording import counted
-from .. import batch, files, sending
+from .. import batch, files, sending, tracing
 
 NAMED = 3
 """Largest number of objects that a message names."""
@@ -19,8 +19,8 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
     bl_idname = "rototoon.send_to_farm"
     bl_label = "Send to Farm"
     bl_description = (
-        "Write the contours and the paint of many shots as documents, with a manifest for the command rototoon batch and job files for render farms. "
-        "Collect Results takes the finished tracks and painted regions in"
+        "Write the contours, the lines and the paint of many shots as documents, with a manifest for the command rototoon batch and job files for render "
+        "farms. Collect Results takes the finished tracks, traced strokes and painted regions in"
     )
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
@@ -32,8 +32,8 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
         name="Shots",
         description="What is sent",
         items=(
-            ("SCENE", "Scene", "Every Grease Pencil object of the scene that has footage, and contours or shapes of paint"),
-            ("SELECTED", "Selected Objects", "The selected Grease Pencil objects that have footage, and contours or shapes of paint"),
+            ("SCENE", "Scene", "Every Grease Pencil object of the scene that has footage, and contours, lines or shapes of paint"),
+            ("SELECTED", "Selected Objects", "The selected Grease Pencil objects that have footage, and contours, lines or shapes of paint"),
             ("FOLDER", "Files of a Folder", "The scene of every Blender file of a folder, as the files were saved"),
         ),
     )
@@ -45,6 +45,30 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
     use_snap: bpy.props.BoolProperty(name="Snap to Ink", description="Also lay the tracked contours along the drawn lines", default=False)
     use_mattes: bpy.props.BoolProperty(
         name="Mattes", description="Also write a matte of the closed parts for every frame, as PNG files", default=False
+    )
+    lines: bpy.props.EnumProperty(
+        name="Lines",
+        description="Which lines are traced. The kind of drawing and the sensitivity are those of the panel Lines",
+        items=(
+            ("DRAWN", "Where You Drew", "As Trace Drawing, for objects with strokes of yours on the layer of Trace Drawing"),
+            ("TRACE", "Trace Drawing", "As Trace Drawing, for every object with footage"),
+            (
+                "CARRY",
+                "Carry Strokes",
+                "As Carry Strokes, for objects with strokes of yours on any layer that is neither locked nor hidden, but for those with contours, snapped "
+                "lines and paint",
+            ),
+            ("NONE", "None", "No lines"),
+        ),
+    )
+    new_lines: bpy.props.BoolProperty(
+        name="New Lines",
+        description="With Carry Strokes: lines of the footage that no stroke explains become new strokes, on the active layer. "
+        "On the layer of Trace Drawing they always do",
+        default=False,
+    )
+    hold: bpy.props.BoolProperty(
+        name="Hold", description="A frame with the same picture as the one before, as in films on twos, holds its traced drawing", default=True
     )
     engine: bpy.props.EnumProperty(
         name="Jobs",
@@ -68,11 +92,12 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
 
     def begin(self, context):
         self._folder = folder_of(self.directory, "Choose a folder for the batch")
+        lines = tracing.Wanted(self.lines, self.new_lines, self.hold)
         if self.which == "FOLDER":
             paths = files.blend_files(folder_of(self.source or "//", "Save this file, or choose the folder of the Blender files"))
-            return jobs.Worker(lambda progress: files.shots_of(paths, progress))
+            return jobs.Worker(lambda progress: files.shots_of(paths, lines, progress))
         objects = context.scene.objects if self.which == "SCENE" else context.selected_objects
-        found = sending.shots_of(objects, bpy.data.filepath)
+        found = sending.shots_of(objects, bpy.data.filepath, lines)
         return jobs.Worker(lambda _progress: found)
 
     def finish(self, _context, work) -> str:

@@ -2,10 +2,7 @@
 
 import bpy
 
-from ...blender import grease_pencil as gp
-from ...blender import guard
-from ...blender.errors import Problem
-from .. import drawings as dr
+from .. import choosing
 from .tracing_base import Tracing
 
 
@@ -34,24 +31,9 @@ class ROTOTOON_OT_carry_strokes(Tracing, bpy.types.Operator):
     )
 
     def begin(self, context):
-        ob, active = context.object, self.layers == "ACTIVE"
-        wanted = _layers(ob, active)
-        guard.need_some(wanted)
-        self.warn(guard.left_out(wanted))
-        names = [layer.name for layer in guard.open_layers(wanted)]
-        home = gp.active_layer(ob)
-        home = home.name if home is not None and home.name in names else names[-1]
-        traced = ob.rototoon.lines_layer in names
-        return self.start(context, names, ob.rototoon.lines_layer if traced else home, self.new_lines or traced)
-
-
-def _layers(ob, active: bool) -> list:
-    """The layers whose strokes are carried, closed ones too."""
-    wanted = dr.layers(ob, active)
-    if not wanted:
-        what = "The active layer has contours, snapped lines or paint: make" if active else "There are no drawings to carry: draw on"
-        raise Problem(f"{what} another layer active" if active else f"{what} a layer of your own")
-    return wanted
+        chosen = choosing.to_carry(context.object, self.layers == "ACTIVE", self.new_lines)
+        self.warn(chosen.left)
+        return self.start(context, chosen)
 
 
 CLASSES = (ROTOTOON_OT_carry_strokes,)

@@ -2,6 +2,7 @@
 
 import bpy
 
+from .. import choosing
 from .tracing_base import Tracing
 
 
@@ -15,8 +16,7 @@ class ROTOTOON_OT_trace_drawing(Tracing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def begin(self, context):
-        name = context.object.rototoon.lines_layer
-        return self.start(context, [name], name, new=True)
+        return self.start(context, choosing.to_trace(context.object))
 
 
 CLASSES = (ROTOTOON_OT_trace_drawing,)

@@ -10,7 +10,7 @@ from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, listed
 from .. import drawings as dr
 from .. import plan as pl
-from .. import doubts, properties, tracing
+from .. import choosing, doubts, properties, tracing
 
 FRAMES = (
     ("ALL", "All", "All frames of the footage"),
@@ -75,10 +75,10 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
         items=(("SETTINGS", "As in the Panel", "The kind chosen in the panel"), *properties.STYLES),
     )
 
-    def start(self, context, names: list[str], home: str, new: bool):
-        """The worker for some layers. New strokes go to the layer `home`."""
-        self._ob, self._home = context.object, home
-        self._plan = plan_of(self._ob, names, *self.span(context), new)
+    def start(self, context, chosen: choosing.Chosen):
+        """The worker for some layers."""
+        self._ob, self._home = context.object, chosen.home
+        self._plan = plan_of(self._ob, chosen.layers, *self.span(context), chosen.new)
         self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
