@@ -44,6 +44,8 @@ class Result:
     object: str
     document: dict[str, Any] | None
     failure: str = ""
+    path: str = ""
+    """The document's file."""
     lines: dict[str, Any] | None = None
     """How its lines were sent: `layers`, `home`, `new` and `hold`. `None` if no lines were sent."""
     held: set[int] = field(default_factory=set)
@@ -107,7 +109,8 @@ def _result(folder: Path, entry: Mapping[str, Any]) -> Result:
         return Result(shot, name, None, f"{folder / RECORD} is damaged: start the batch again")
     if failure or not written:
         return Result(shot, name, None, failure or "nothing was tracked")
-    return Result(shot, name, files.load(str(folder / written[-1])))
+    path = str(folder / written[-1])
+    return Result(shot, name, files.load(path), path=path)
 
 
 def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[float]:

@@ -6,7 +6,7 @@ as they were sent. A document has one set of drawings. So layers whose drawings 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from rototoon.lines import Traced
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
+from ..common.wording import counted
 from ..lines import choosing, tracing
 from ..lines import drawings as dr
 from ..lines import plan as lines_plan
@@ -87,9 +88,11 @@ def _need_lines(ob, names: list[str]) -> None:
             raise Problem(f'The layer "{name}" has contours, snapped lines or paint: give lines a layer of their own, in the panel Lines')
 
 
-def find_held(results: Iterable[collecting.Result], patterns: Mapping[str, str]) -> None:
+def find_held(results: Sequence[collecting.Result], patterns: Mapping[str, str], progress: Callable[[float, str], bool]) -> None:
     """Finds the pictures of results that are the same file as the one before. `patterns` are those of the objects' footage. Uses no Blender."""
-    for result in results:
+    for k, result in enumerate(results):
+        if not progress(k / len(results), result.object):
+            return
         if result.lines and result.lines["hold"] and result.document is not None and result.object in patterns:
             shown = result.document["footage"]
             result.held = lines_plan.held_pictures(patterns[result.object], shown["first"], shown["last"], 0)
@@ -104,7 +107,7 @@ def taking(ob, result: collecting.Result) -> Iterator[float]:
         raise Problem("its lines have no result yet: start the batch again")
     collecting.need_same_footage(ob, lines_plan.footage_of(ob, ""), document["footage"], ("width", "height", "first", "last"))
     _need_lines(ob, lines["layers"])
-    # With new strokes a layer from which the artist has deleted all drawings is no error here: it differs from what was sent.
+    # A layer from which the artist has deleted all drawings differs from what was sent. Without new strokes it would be refused as empty.
     plan = plan_of(ob, lines["layers"], *lines_plan.film(ob), new=True)
     now, before = [group.document["drawings"] for group in plan.groups], document.get("drawings", [])
     if len(now) != 1 or not _same(now[0], before):
@@ -112,8 +115,7 @@ def taking(ob, result: collecting.Result) -> Iterator[float]:
         raise Problem(f"its drawings on {_named(lines['layers'])} were changed since they were sent, so its lines stay as they are; press {button}")
     plan.new = lines["new"]
     plan.held = {picture + plan.offset for picture in result.held}
-    traced = _traced(document)
-    _need_drawings(traced, before)
+    traced = _traced(result)
     return (yield from tracing.finishing(ob, plan, [traced], lines["home"]))
 
 
@@ -122,24 +124,23 @@ def _named(layers: Sequence[str]) -> str:
     return f"the layer {names[0]}" if len(names) == 1 else f"the layers {', '.join(names[:-1])} and {names[-1]}"
 
 
-def _traced(document: Mapping[str, Any]) -> Traced:
-    own = {name: document[name] for name in ("rototoon", "footage", "traced")}
+def _traced(result: collecting.Result) -> Traced:
+    """The traced strokes of a result. Raises a `Problem` if they are damaged."""
+    own = {name: result.document[name] for name in ("rototoon", "footage", "traced")}
     try:
         # The pictures are not read, and only these fields are looked at.
         with Session.from_document({**own, "parts": []}, ".") as session:
-            return session.traced()
+            traced = session.traced()
     except RototoonError as error:
-        raise Problem(str(error)) from error
-
-
-def _need_drawings(traced: Traced, drawings: Sequence[Mapping[str, Any]]) -> None:
-    """Raises a `Problem` if the frames of drawings do not have their strokes, as after a step with other options."""
+        raise Problem(f"{result.path}: {error}") from error
     counts = dict(zip(traced.frames.tolist(), np.diff(traced.stroke_offsets).tolist()))
-    for drawing in drawings:
+    for drawing in result.document.get("drawings", []):
         frame, expected = drawing["frame"], len(drawing["strokes"])
         if counts.get(frame) != expected:
-            found = f"{counts[frame]} strokes" if frame in counts else "no drawing"
-            raise Problem(f"traced: found {found} of picture {frame}, expected the {expected} strokes that were sent: start the batch again")
+            found = counted(counts[frame], "stroke") if frame in counts else "no drawing"
+            wanted = f"expected the {counted(expected, 'stroke')} of the drawing that was sent: start the batch again"
+            raise Problem(f"{result.path}: traced: found {found} on picture {frame}, {wanted}")
+    return traced
 
 
 def _same(now: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]]) -> bool:

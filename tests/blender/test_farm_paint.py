@@ -14,9 +14,14 @@ from line_stage import handle_of, kinds, said
 from test_paint import EYE, GREEN, LAYER, click, clicked, colour_at, places  # noqa: F401 - a fixture
 
 
-def send(tmp_path, **options):
+def send_all(tmp_path, **options):
+    """Saves the file and sends it."""
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "film.blend"))
     assert bpy.ops.rototoon.send_to_farm(directory=str(tmp_path / "farm"), **options) == {"FINISHED"}
+
+
+def send(tmp_path, **options):
+    send_all(tmp_path, **options)
     (shot,) = json.loads((tmp_path / "farm/manifest.json").read_text())["shots"]
     return shot, json.loads((tmp_path / "farm" / shot["project"]).read_text())
 

@@ -13,7 +13,7 @@ from ...common.operators import Long
 from ...common.wording import counted, listed
 from ...lines import doubts
 from ...lines import tracing as lines_tracing
-from ...lines.operators.tracing_base import where_to_look
+from ...lines.operators.tracing_base import keys_now, where_to_look
 from ...paint import filling
 from .. import collecting, painting, tracing
 from .send_to_farm import folder_of
@@ -45,9 +45,9 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         folder = folder_of(self.directory, "Choose the folder that Send to Farm wrote to")
         self._scene, path, patterns = context.scene, bpy.data.filepath, _patterns(context.scene)
 
-        def read(_progress) -> list[collecting.Result]:
+        def read(progress) -> list[collecting.Result]:
             results = collecting.results_of(folder, path)
-            tracing.find_held(results, patterns)
+            tracing.find_held(results, patterns, progress)
             return results
 
         return jobs.Worker(read)
@@ -94,6 +94,7 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
 
     def _count_lines(self, name: str, done: lines_tracing.Done, found: "_Found") -> None:
         found.strokes += len(done.numbers)
+        found.kept += done.kept
         for text in (where_to_look(done), doubts.told(done.confidence)):
             self.warn(f'"{name}": {text}' if text else "")
 
@@ -116,6 +117,8 @@ class _Found:
     contours: int = 0
     strokes: int = 0
     regions: int = 0
+    kept: int = 0
+    """Number of traced drawings that the artist had changed before they were sent: they are keys now."""
     objects: set[str] = field(default_factory=set)
 
     def __str__(self) -> str:
@@ -123,7 +126,7 @@ class _Found:
         nouns = (self.contours, "contour"), (self.strokes, "traced stroke"), (self.regions, "painted region")
         said = [counted(number, noun) for number, noun in nouns if number] or [counted(0, "contour")]
         told = ", ".join(said[:-1]) + " and " + said[-1] if len(said) > 1 else said[0]
-        return f"{told} taken into {counted(len(self.objects), 'object')}"
+        return ", ".join(filter(None, (f"{told} taken into {counted(len(self.objects), 'object')}", keys_now(self.kept))))
 
 
 def _patterns(scene) -> dict[str, str]:

@@ -108,9 +108,12 @@ def told(done: tracing.Done) -> str:
     """What a run has done."""
     if not done.frames:
         return "All of these frames have drawings of yours: nothing was drawn"
-    strokes, frames = len(done.numbers), len(done.frames)
-    text = f"{counted(strokes, 'stroke')} on {counted(frames, 'frame')}"
-    if done.kept:
-        changed = "1 drawing that you had changed is" if done.kept == 1 else f"{done.kept} drawings that you had changed are"
-        text += f", {changed} a key now" if done.kept == 1 else f", {changed} keys now"
-    return text
+    text = f"{counted(len(done.numbers), 'stroke')} on {counted(len(done.frames), 'frame')}"
+    return ", ".join(filter(None, (text, keys_now(done.kept))))
+
+
+def keys_now(kept: int) -> str:
+    """That a number of traced drawings are the artist's now; empty if there are none."""
+    if kept == 1:
+        return "1 drawing that you had changed is a key now"
+    return f"{kept} drawings that you had changed are keys now" if kept else ""
