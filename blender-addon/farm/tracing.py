@@ -70,8 +70,7 @@ def _chosen(ob, wanted: Wanted) -> choosing.Chosen | None:
     if wanted.which == "TRACE" or (wanted.which == "DRAWN" and _drawn(ob, [ob.rototoon.lines_layer])):
         return choosing.to_trace(ob)
     if wanted.which == "CARRY" and _drawn(ob, [layer.name for layer in dr.layers(ob)]):
-        chosen = choosing.to_carry(ob, False, wanted.new)
-        return chosen if _drawn(ob, chosen.layers) else None
+        return choosing.to_carry(ob, False, wanted.new)
     return None
 
 

@@ -79,6 +79,7 @@ def test_a_film_is_traced_there_as_here(addon, film, tmp_path):  # noqa: F811
     assert steps == [[{"do": "check"}, {"do": "trace", "style": "clean", "sensitivity": 1.25}]]
     assert document["parts"] == [] and document["drawings"] == [] and "traced" not in document
     assert shots.snapshot(film) == before, "sending changes nothing"
+    assert said(addon).warnings == (), "contours are not missed"
     work(tmp_path)
     collect(tmp_path)
     assert said(addon).text == "6 traced strokes taken into 1 object"
@@ -141,8 +142,23 @@ def test_lines_are_sent_where_the_artist_drew(addon, film, tmp_path):  # noqa: F
     film.data.layers["Lines"].lock = True
     with pytest.raises(RuntimeError, match='its lines: the layer "Lines" is locked'):
         send(tmp_path)
-    film.data.layers["Lines"].lock, film.rototoon.lines_layer = False, "Contours"
+    film.data.layers["Lines"].lock = False
+    film.data.layers.active = film.data.layers["Ink"]
+    send(tmp_path, lines="CARRY")
+    (listed,) = json.loads((tmp_path / "farm/sent.json").read_text())["shots"]
+    assert listed["lines"] == {"layers": ["Ink", "Lines"], "home": "Lines", "new": True, "hold": True}, "as Carry Strokes"
+
+
+def test_objects_without_strokes_are_sent_without_lines(addon, film, tmp_path):  # noqa: F811
+    one_line(addon, film, "Ink", (1,))
+    gp = addon("blender.grease_pencil")
+    gp.remove_frames(film.data.layers["Ink"], [1])
+    film.data.layers["Ink"].frames.new(2)
     shots.draw(addon, film, 1, [ls.lines(0)[BODY][0][:-1:8]])
+    for options in ({"lines": "CARRY"}, {"lines": "CARRY", "new_lines": True}, {}):
+        ((steps,), _) = send(tmp_path, **options)
+        assert [step["do"] for step in steps] == ["check", "track"] and said(addon).warnings == ()
+    film.rototoon.lines_layer = "Contours"
     send(tmp_path, lines="TRACE")
     assert 'The layer "Contours" has contours, snapped lines or paint' in said(addon).text
 
