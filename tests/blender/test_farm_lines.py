@@ -82,12 +82,13 @@ def test_a_film_is_traced_there_as_here(addon, film, tmp_path):  # noqa: F811
     collect(tmp_path)
     assert said(addon).text == "6 traced strokes taken into 1 object"
     assert kinds(addon, film, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
-    taken, raw = drawn(addon, film), studio.digests(addon, film)
+    taken, raw, records = drawn(addon, film), studio.digests(addon, film), film.data["rototoon_lines"]
     collect(tmp_path)
     assert studio.digests(addon, film) == raw, "a second time changes nothing"
     ob = opened(tmp_path)
     bpy.ops.rototoon.trace_drawing()
     equal(taken, drawn(addon, ob))
+    assert ob.data["rototoon_lines"] == records
 
 
 def test_strokes_of_several_layers_are_carried(addon, film, tmp_path):  # noqa: F811
@@ -161,6 +162,12 @@ def test_objects_without_strokes_are_sent_without_lines(addon, film, tmp_path): 
     assert 'The layer "Contours" has contours, snapped lines or paint' in said(addon).text
 
 
+def test_lines_that_could_not_be_taken_in_are_not_sent(addon, film, tmp_path):  # noqa: F811
+    bpy.context.scene.collection.objects.link(film.copy())
+    with pytest.raises(RuntimeError, match='"line": .*its lines: "line" shares its drawings with "line.001"'):
+        send(tmp_path, lines="TRACE")
+
+
 def test_held_pictures_become_held_drawings(addon, film, pictures, tmp_path):  # noqa: F811
     for number, source in enumerate((1, 1, 2, 3, 3, 3), 1):
         shutil.copy(pictures.with_name(f"line_{source:03}.png"), tmp_path / f"line_{number:03}.png")
@@ -206,8 +213,13 @@ def test_lines_that_were_changed_meanwhile_stay(addon, film, tmp_path):  # noqa:
     film = opened(tmp_path)  # noqa: F811
     move(addon, film, "Lines", 6)
     assert_stays(addon, film, tmp_path, "were changed since they were sent")
+    film, gp = opened(tmp_path), addon("blender.grease_pencil")
+    gp.put(handle_of(addon, film, "Lines", 6), "cyclic", np.array([True]))
+    assert_stays(addon, film, tmp_path, "were changed since they were sent")
     film = opened(tmp_path)
-    gp = addon("blender.grease_pencil")
+    film.data.materials[0].grease_pencil.color = (1, 0, 0, 1)
+    assert_stays(addon, film, tmp_path, "were changed since they were sent")
+    film = opened(tmp_path)
     gp.remove_frames(gp.find_layer(film, "Lines"), [1, 6])
     assert_stays(addon, film, tmp_path, "were changed since they were sent")
 
@@ -230,7 +242,9 @@ def test_closed_layers_and_blank_drawings_stay(addon, film, tmp_path):  # noqa: 
         setattr(layer, name, False)
     film.rototoon.last = 5
     assert_stays(addon, film, tmp_path, r"other footage than what was sent \(last 5, not 6\)")
-    film.rototoon.last = 6
+    film.rototoon.last, film.rototoon.contours_layer = 6, "Ink"
+    assert_stays(addon, film, tmp_path, 'The layer "Ink" has contours')
+    film.rototoon.contours_layer = "Contours"
     layer.frames.new(3)
     collect(tmp_path)
     assert kinds(addon, film, "Ink")[3] == "KEYFRAME" and not ls.strokes(addon, film, "Ink", 3)
