@@ -1,7 +1,9 @@
 """Traced lines in a batch: what is sent of them, and their results.
 
 The artist's drawings are sent as Trace Drawing and Carry Strokes read them. The results are taken as these operators write them, if the drawings are
-as they were sent. A document has one set of drawings. So layers whose drawings are on other frames are sent as a shot of their own.
+as they were sent. A change on one drawing may change the numbers on all others, so the lines of a shot are taken as a whole.
+
+A document has one set of drawings. So layers whose drawings are on other frames are sent as a shot of their own.
 """
 
 from __future__ import annotations
