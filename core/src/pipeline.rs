@@ -27,7 +27,7 @@ pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
-pub use paint::unpainted;
+pub use paint::undrawn;
 pub use render::{Picture, RenderJob, render};
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};

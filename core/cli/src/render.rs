@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws the contours over the footage, the parts' matte, the parts cut out, a picture of part ids, or painted regions")
+        .about("Draws the contours over the footage, the parts' matte, the parts cut out, a picture of part ids, painted regions, or traced strokes")
         .arg(arguments::project())
         .arg(arguments::output(
             "PATTERN",
@@ -50,6 +50,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             "ids" => Picture::Ids,
             "paint" => Picture::Paint,
             "painted" => Picture::Painted,
+            "lines" => Picture::Lines,
+            "cel" => Picture::Cel,
             _ => Picture::Overlay(OverlayOptions {
                 line_width: arguments::number(given, "line_width"),
                 points: arguments::flag(given, "points"),
@@ -58,16 +60,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         },
         frames: given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned(),
         parts: given.get_many::<String>("parts").map(|names| names.cloned().collect()),
+        scale: arguments::number(given, "scale"),
         output: output.to_owned(),
     };
-    let painted = matches!(job.picture, Picture::Paint | Picture::Painted);
-    let document = if painted { project::load_drawn(from)? } else { project::load(from)? };
+    let drawn = matches!(job.picture, Picture::Paint | Picture::Painted | Picture::Lines | Picture::Cel);
+    let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     check_writable(&probed(output))?;
     progress::run(arguments::threads(given), |bar| {
         pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
     })?;
-    let lacking =
-        if painted { pipeline::unpainted(&document, job.frames.clone()) } else { pipeline::untracked(&document.scene) };
+    let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
     lacking.iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }

@@ -11,7 +11,8 @@
 //! - [`visible`]: how much of each pixel every part shows, nearer parts over farther ones
 //! - [`ids`]: the same as a colour for each part; mattes with a layer for each
 //! - [`cryptomatte`]: the same as ranked ids, for keyers
-//! - [`paint`](mod@paint): painted regions, alone and below their drawing
+//! - [`paint`](mod@paint): painted regions and strokes, alone and below their drawing
+//! - [`stroke`]: strokes of varying width as areas
 //! - [`layers`]: OpenEXR files of any number of named channels
 //! - [`motion`]: contours between frames
 //! - [`grow`]: the outline moved outward or inward
@@ -61,6 +62,7 @@ mod near;
 pub mod overlay;
 pub mod paint;
 pub mod rows;
+pub mod stroke;
 pub mod visible;
 pub mod widths;
 

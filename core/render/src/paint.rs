@@ -1,4 +1,4 @@
-//! Painted regions of a drawing: as a picture with alpha, below the drawing, and as ids for keyers.
+//! Painted regions and strokes of a drawing: as a picture with alpha, below the drawing, and as ids for keyers.
 //!
 //! Regions of a drawing lie side by side, and their outlines meet in the middle of the line between them. Drawn one over the
 //! other with opacities, they would leave seams there: two halves of a pixel cover three quarters of it. So shares of a
@@ -7,7 +7,8 @@
 //! borders of overlapping regions cross in one pixel, the farther one may get some of the area behind the nearer one.
 //! (OpenGL has the same rule under the name *saturate*: Segal & Akeley, The OpenGL Graphics System, section on blending.)
 //!
-//! A region's area is that of its outline minus that of its holes ([`super::coverage`]). Colours are mixed in linear light.
+//! The area of a region is the union of its polygons minus that of its holes ([`super::coverage`]). A stroke is a region too
+//! ([`super::stroke`]). Colours are mixed in linear light.
 //!
 //! The drawing lies over its paint as with the mode *multiply* of other programs (W3C, Compositing and Blending Level 1,
 //! equation for `multiply` with alpha): ink darkens the paint below it, white paper leaves it, and where nothing is painted the
@@ -22,14 +23,14 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::colour;
 
-/// A painted region on one frame.
+/// A painted region, or a stroke, on one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Region {
     /// Its name in Cryptomatte layers. A region has the same name on all frames.
     pub name: String,
-    /// Its closed outline, in pixels of the picture.
-    pub outline: Vec<Point>,
-    /// The closed outlines of its holes, inside of `outline`.
+    /// Closed polygons in pixels of the picture. The region is their union.
+    pub areas: Vec<Vec<Point>>,
+    /// Closed outlines of its holes.
     pub holes: Vec<Vec<Point>>,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
@@ -59,9 +60,11 @@ pub fn shares(regions: &[Region], width: usize, height: usize) -> Visible {
 
 /// The area of a region in each pixel of the part of a band that contains it.
 fn area(region: &Region, band: Window) -> Option<(Window, Raster<f32>)> {
-    let window = Window::around(&region.outline)?.common(band)?;
+    let near = region.areas.iter().filter_map(|polygon| Some((Window::around(polygon)?.common(band)?, polygon)));
+    let (windows, polygons): (Vec<Window>, Vec<Vec<Point>>) = near.map(|(own, polygon)| (own, polygon.clone())).unzip();
+    let window = windows.into_iter().reduce(Window::united)?;
     let draw = |polygons: Vec<Vec<Point>>| Shape::new(&[polygons]).draw(window, &mut || true);
-    let mut own = draw(vec![region.outline.clone()])?;
+    let mut own = draw(polygons)?;
     if !region.holes.is_empty() {
         let holes = draw(region.holes.clone())?;
         own.data_mut().iter_mut().zip(holes.data()).for_each(|(own, hole)| *own = (*own - hole).max(0.0));
@@ -133,7 +136,7 @@ mod tests {
     }
 
     fn region(outline: Vec<Point>, colour: Colour) -> Region {
-        Region { name: "region".into(), outline, holes: Vec::new(), colour }
+        Region { name: "region".into(), areas: vec![outline], holes: Vec::new(), colour }
     }
 
     fn picture(regions: &[Region], width: usize, height: usize) -> Raster<[f32; 4]> {

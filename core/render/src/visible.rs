@@ -103,12 +103,7 @@ impl Stack {
 
     /// A rectangle of whole pixels that contains all outlines; `None` if there are none.
     pub fn bounds(&self) -> Option<Window> {
-        self.0.iter().map(|outline| outline.bounds).reduce(|a, b| Window {
-            left: a.left.min(b.left),
-            top: a.top.min(b.top),
-            right: a.right.max(b.right),
-            bottom: a.bottom.max(b.bottom),
-        })
+        self.0.iter().map(|outline| outline.bounds).reduce(Window::united)
     }
 
     /// The shares of each pixel of a window, row by row; the nearest part first. `None` if `go_on`, called for each row

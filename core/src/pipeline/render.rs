@@ -5,7 +5,7 @@ use crate::image::Sequence;
 use crate::project::{Document, Inputs, write_whole};
 use crate::render::paint::Region;
 use crate::render::{self, Format, OverlayOptions};
-use crate::scene::{FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -30,6 +30,10 @@ pub enum Picture {
     Paint,
     /// The footage over the painted regions, by the mode *multiply*.
     Painted,
+    /// The traced strokes, on nothing. An OpenEXR file also has Cryptomatte layers.
+    Lines,
+    /// The traced strokes over the painted regions. An OpenEXR file also has Cryptomatte layers.
+    Cel,
 }
 
 /// What to render and where.
@@ -41,6 +45,9 @@ pub struct RenderJob {
     pub frames: Option<RangeInclusive<FrameNumber>>,
     /// Names of the parts; `None` takes all.
     pub parts: Option<Vec<String>>,
+    /// Size of the picture as a multiple of the footage's. Other than 1 only for [`Picture::Paint`], [`Picture::Lines`] and
+    /// [`Picture::Cel`], which are drawn without the footage.
+    pub scale: f64,
     /// The output path, ending in `.png` or `.exr`: a pattern with one `%d` or `%0Nd`, or a plain path for a single
     /// frame.
     pub output: String,
@@ -51,8 +58,10 @@ struct Rendering {
     frames: Vec<(FrameNumber, PathBuf)>,
     parts: Option<Vec<usize>>,
     format: Format,
-    /// The painted regions of each frame, if the picture shows them.
-    paint: BTreeMap<FrameNumber, Vec<Region>>,
+    /// The footage, with the size of the pictures.
+    size: Footage,
+    /// The painted regions and strokes of each frame that the picture shows.
+    drawn: BTreeMap<FrameNumber, Vec<Region>>,
 }
 
 /// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
@@ -73,7 +82,7 @@ pub fn render(
     let plan = plan(document, &sequence, job)?;
     let mut done = 0;
     progress.report("Rendering", 0.0)?;
-    let footage = &document.scene.footage;
+    let footage = &plan.size;
     let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
     let at_once = memory::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
     for batch in plan.frames.chunks(at_once) {
@@ -105,10 +114,10 @@ fn picture(
         Picture::Layers => render::matte_layers(&document.scene, frame, parts),
         Picture::Parts => render::matte_parts(&document.scene, frame, parts),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
-        Picture::Paint => paint::alone(&document.scene.footage, plan.paint.get(&frame), plan.format),
+        Picture::Paint | Picture::Lines | Picture::Cel => paint::alone(&plan.size, plan.drawn.get(&frame), plan.format),
         Picture::Painted => {
             let drawing = sequence.layer(frame)?;
-            render::encode::layer(&paint::under(&drawing, plan.paint.get(&frame)), plan.format)
+            render::encode::layer(&paint::under(&drawing, plan.drawn.get(&frame)), plan.format)
         }
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
@@ -142,15 +151,13 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     for (frame, path) in &frames {
         inputs.check(path).map_err(|error| PipelineError::Request(format!("frame {frame}: {error}")))?;
     }
-    let paint = match job.picture {
-        Picture::Paint | Picture::Painted => paint::of(document, job)?,
-        _ => BTreeMap::new(),
-    };
+    let drawn = paint::of(document, job)?;
     Ok(Rendering {
         frames,
         parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
         format,
-        paint,
+        size: paint::sized(footage, job)?,
+        drawn,
     })
 }
 

@@ -22,8 +22,8 @@ use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Width of an exported stroke without widths, in pixels of 540 lines.
-const PLAIN: f64 = 2.0;
+/// Width of an exported or rendered stroke without widths, in pixels of 540 lines.
+pub(super) const PLAIN: f64 = 2.0;
 
 /// Traces the drawings of a document in `folder` and puts the strokes into its field `traced`. It runs on the caller's
 /// rayon pool; the result does not depend on the pool.
@@ -108,6 +108,11 @@ fn behind(a: (bool, f64), b: (bool, f64)) -> Ordering {
         (true, true) => b.1.total_cmp(&a.1),
         (fill, other) => other.cmp(&fill),
     }
+}
+
+/// The same order for the strokes of one frame.
+pub(super) fn behind_in(a: &TracedStroke, b: &TracedStroke) -> Ordering {
+    behind((a.fill, area(&a.points)), (b.fill, area(&b.points)))
 }
 
 fn area(points: &[Point]) -> f64 {

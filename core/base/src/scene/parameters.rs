@@ -89,7 +89,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 }
 
 /// Every parameter, in the order of the stages.
-pub const ALL: [Parameter; 14] = [
+pub const ALL: [Parameter; 15] = [
     Parameter {
         id: "threads",
         label: "Threads",
@@ -151,7 +151,7 @@ pub const ALL: [Parameter; 14] = [
         id: "what",
         label: "What",
         help: "The picture to render: contours over the footage, the matte of the closed parts, \
-               the footage cut out by them, a colour for each part, painted regions, or the drawing over its paint.",
+               the footage cut out by them, a colour for each part, painted regions, the drawing over them, traced strokes, or traced strokes over painted regions.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
@@ -162,8 +162,18 @@ pub const ALL: [Parameter; 14] = [
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
                 choice("paint", "Painted regions alone; in OpenEXR also Cryptomatte layers"),
                 choice("painted", "The drawing over its painted regions"),
+                choice("lines", "Traced strokes alone; in OpenEXR also Cryptomatte layers"),
+                choice("cel", "Traced strokes over painted regions; in OpenEXR also Cryptomatte layers"),
             ],
         },
+    },
+    Parameter {
+        id: "scale",
+        label: "Scale",
+        help: "Size of the picture as a multiple of the footage's, for what is drawn without the footage: \
+               painted regions and traced strokes.",
+        stage: Stage::Render,
+        kind: Kind::Number { default: 1.0, min: 0.1, max: 16.0, unit: "" },
     },
     Parameter {
         id: "layers",

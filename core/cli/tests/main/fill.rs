@@ -142,7 +142,7 @@ fn what_was_not_painted_is_told_when_it_is_rendered() {
     assert!(run("fill", &path, &some, &["--frames", "0-1"]).status.success());
     let output = run("render", &some, &to, &["--what", "paint"]);
     assert!(output.status.success());
-    assert!(told(&output).contains("frames 2, 3: not painted; run `rototoon fill` on them"), "{}", told(&output));
+    assert!(told(&output).contains("frames 2, 3: not painted; run `rototoon fill` there"), "{}", told(&output));
     let empty = image::open(folder.path().join("paint_3.png")).unwrap().to_rgba8();
     assert!(empty.pixels().all(|pixel| pixel.0 == [0; 4]));
     let output = run("render", &some, &to, &["--what", "paint", "--frames", "0-1"]);
@@ -150,7 +150,7 @@ fn what_was_not_painted_is_told_when_it_is_rendered() {
     let output = run("render", &some, &to, &["--what", "paint", "--parts", "arm"]);
     assert!(!output.status.success());
     assert!(
-        told(&output).contains("found \"arm\", expected none: painted regions belong to no part"),
+        told(&output).contains("found \"arm\", expected none: painted regions and traced strokes belong to no part"),
         "{}",
         told(&output)
     );

@@ -7,6 +7,7 @@ mod budgets;
 mod cartoon;
 mod command_line;
 mod documented;
+mod drawn;
 mod exchange;
 mod fill;
 mod fit;

@@ -79,6 +79,16 @@ impl Window {
         })
     }
 
+    /// The smallest window that contains both.
+    pub(super) fn united(self, other: Self) -> Self {
+        Self {
+            left: self.left.min(other.left),
+            top: self.top.min(other.top),
+            right: self.right.max(other.right),
+            bottom: self.bottom.max(other.bottom),
+        }
+    }
+
     /// The pixels that both windows have; `None` if there are none.
     pub(super) fn common(self, other: Self) -> Option<Self> {
         let (left, top) = (self.left.max(other.left), self.top.max(other.top));

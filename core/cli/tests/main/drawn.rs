@@ -1,0 +1,119 @@
+//! Tests of pictures of painted regions and traced strokes.
+
+use image::{ImageBuffer, Rgb, RgbaImage};
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// A document of two frames of 40 × 30 pixels with these fields.
+fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    for frame in 0..2 {
+        let paper = ImageBuffer::from_pixel(40, 30, Rgb([255u8; 3]));
+        paper.save(folder.path().join(format!("f_{frame}.png"))).unwrap();
+    }
+    let footage = json!({"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 40, "height": 30});
+    let mut document = json!({"rototoon": 1, "footage": footage, "parts": []});
+    document.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+    let path = folder.path().join("project.json");
+    fs::write(&path, document.to_string()).unwrap();
+    (folder, path)
+}
+
+/// A red square behind a black line 4 px wide, in front of a grey square that is solid.
+fn drawn() -> Value {
+    let square = |x: f64, y: f64, side: f64| json!([[x, y], [x + side, y], [x + side, y + side], [x, y + side]]);
+    let region = json!({"outline": square(10.0, 5.0, 20.0), "colour": [1, 0, 0], "track": 3, "confidence": 1.0});
+    let line =
+        json!({"track": 1, "points": [[5, 15], [35, 15]], "closed": false, "widths": [4, 4], "colour": [0, 0, 0]});
+    let solid =
+        json!({"track": 7, "points": square(2.0, 12.0, 6.0), "closed": true, "fill": true, "colour": [0.5, 0.5, 0.5]});
+    json!({
+        "filled": [{"frame": 0, "regions": [region]}],
+        "traced": [{"frame": 0, "strokes": [line, solid]}, {"frame": 1, "strokes": []}],
+    })
+}
+
+fn render(from: &Path, to: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("render").arg(from).arg("-o").arg(to).args(more).output().unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn picture(from: &Path, what: &str, more: &[&str]) -> RgbaImage {
+    let to = from.with_file_name(format!("{what}_%d.png"));
+    let output = render(from, &to, &[&["--what", what, "--frames", "0"], more].concat());
+    assert!(output.status.success() && told(&output).is_empty(), "{}", told(&output));
+    image::open(from.with_file_name(format!("{what}_0.png"))).unwrap().to_rgba8()
+}
+
+#[test]
+fn strokes_lie_over_solid_shapes_and_paint() {
+    let (_folder, path) = project(drawn());
+    let (black, grey, red, none) = ([0, 0, 0, 255], [128, 128, 128, 255], [255, 0, 0, 255], [0; 4]);
+    let lines = picture(&path, "lines", &[]);
+    let cel = picture(&path, "cel", &[]);
+    for ((x, y), of_lines, of_cel) in [
+        ((20, 15), black, black),
+        ((20, 13), black, black),
+        ((6, 15), black, black),
+        ((3, 17), grey, grey),
+        ((20, 8), none, red),
+        ((20, 11), none, red),
+        ((2, 2), none, none),
+    ] {
+        assert_eq!([lines.get_pixel(x, y).0, cel.get_pixel(x, y).0], [of_lines, of_cel], "{x} {y}");
+    }
+}
+
+#[test]
+fn pictures_have_the_size_that_is_asked_for() {
+    let (_folder, path) = project(drawn());
+    let cel = picture(&path, "cel", &["--scale", "2.5"]);
+    assert_eq!(cel.dimensions(), (100, 75));
+    // The line is 10 px wide now, and as long as it was: 75 px and its round ends.
+    let column = (0..75).filter(|&y| cel.get_pixel(50, y).0 == [0, 0, 0, 255]).count();
+    assert!((9..=10).contains(&column), "{column}");
+    assert_eq!(cel.get_pixel(50, 20).0, [255, 0, 0, 255]);
+    let output = render(&path, &path.with_file_name("m_%d.png"), &["--what", "painted", "--scale", "2"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(told(&output).contains("--scale: found 2, expected 1: only paint, lines and cel"), "{}", told(&output));
+}
+
+#[test]
+fn regions_and_strokes_are_keyed_by_their_numbers() {
+    let (_folder, path) = project(drawn());
+    let to = path.with_file_name("cel.exr");
+    assert!(render(&path, &to, &["--what", "cel", "--frames", "0"]).status.success());
+    let bytes = fs::read(&to).unwrap();
+    let header = String::from_utf8_lossy(&bytes);
+    for name in ["\"region 3\":", "\"stroke 1\":", "\"stroke 7\":"] {
+        assert!(header.contains(name), "{name}");
+    }
+    let again = path.with_file_name("again.exr");
+    assert!(render(&path, &again, &["--what", "cel", "--frames", "0", "--threads", "1"]).status.success());
+    assert_eq!(bytes, fs::read(again).unwrap());
+}
+
+#[test]
+fn frames_with_nothing_to_draw_are_told() {
+    let (_folder, path) = project(drawn());
+    let output = render(&path, &path.with_file_name("c_%d.png"), &["--what", "cel"]);
+    assert!(output.status.success());
+    assert!(told(&output).contains("frame 1: not painted; run `rototoon fill` there"), "{}", told(&output));
+    assert!(!told(&output).contains("not traced"), "frame 1 is traced, without any stroke: {}", told(&output));
+    let (_folder, empty) = project(json!({}));
+    for (what, field, command) in [("lines", "traced", "trace"), ("cel", "filled", "fill"), ("paint", "filled", "fill")]
+    {
+        let output = render(&empty, &empty.with_file_name("c_%d.png"), &["--what", what]);
+        assert_eq!(output.status.code(), Some(1));
+        let said = told(&output);
+        assert!(
+            said.contains(&format!("{field}: found no ")) && said.contains(&format!("`rototoon {command}`")),
+            "{said}"
+        );
+    }
+}
