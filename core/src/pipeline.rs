@@ -316,7 +316,7 @@ mod tests {
         assert_eq!(choices("motion"), Motion::ALL.map(|(_, id)| id));
         let CorridorWidth { share, least, most } = CorridorWidth::default();
         assert_eq!([share, least, most], ["corridor_share", "corridor_least", "corridor_most"].map(default));
-        assert_eq!(OverlayOptions::default().line_width, default("line_width"));
+        assert_eq!(crate::render::OverlayOptions::default().line_width, default("line_width"));
         assert_eq!(SvgOptions::default().spacing, default("spacing"));
     }
 
