@@ -16,6 +16,7 @@ mod report;
 mod reshape;
 mod sheet;
 pub mod spans;
+mod strokes;
 mod style;
 mod trace;
 mod tween;
@@ -189,13 +190,14 @@ fn frames_of(
     Ok(asked)
 }
 
-/// Exports the document as an animated SVG: its painted regions, its parts, and its traced strokes over them.
+/// Exports the document as an animated SVG: its painted regions, its parts, and its strokes over them:
+/// traced ones, in-betweens and drawings.
 ///
 /// # Errors
 ///
-/// [`PipelineError::Field`] if the fields `filled` or `traced` cannot be read.
+/// [`PipelineError::Field`] if the fields `filled`, `traced`, `in_betweens` or `drawings` cannot be read.
 pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, PipelineError> {
-    let (fills, strokes) = (fill::fills_to_export(document)?, trace::strokes_to_export(document)?);
+    let (fills, strokes) = (fill::fills_to_export(document)?, strokes::to_export(document)?);
     Ok(svg_with_drawn(&document.scene, &fills, &strokes, options))
 }
 

@@ -24,7 +24,7 @@ use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::colour;
 
 /// A painted region, or a stroke, on one frame.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Region {
     /// Its name in Cryptomatte layers. A region has the same name on all frames.
     pub name: String,
@@ -34,6 +34,8 @@ pub struct Region {
     pub holes: Vec<Vec<Point>>,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
+    /// Its opacity, 0 to 1: the share of its area that it covers.
+    pub opacity: f32,
 }
 
 /// The share of each region in each pixel of a picture. Regions go from the back to the front; a share's `part` is an index of them.
@@ -46,7 +48,7 @@ pub fn shares(regions: &[Region], width: usize, height: usize) -> Visible {
             for y in window.top..window.bottom {
                 let first = (y - band.top) as usize * band.width() + window.left as usize;
                 for (x, own) in own.row((y - window.top) as usize).iter().enumerate() {
-                    let coverage = own.min(left[first + x]);
+                    let coverage = (region.opacity * own).min(left[first + x]);
                     if coverage >= LEAST {
                         left[first + x] -= coverage;
                         shown[first + x].push(Share { part, coverage });
@@ -136,7 +138,7 @@ mod tests {
     }
 
     fn region(outline: Vec<Point>, colour: Colour) -> Region {
-        Region { name: "region".into(), areas: vec![outline], holes: Vec::new(), colour }
+        Region { name: "region".into(), areas: vec![outline], holes: Vec::new(), colour, opacity: 1.0 }
     }
 
     fn picture(regions: &[Region], width: usize, height: usize) -> Raster<[f32; 4]> {
@@ -164,6 +166,10 @@ mod tests {
         let grey = colour::decode(0.5);
         assert_eq!(found.get(2, 2), [grey, grey, grey, 1.0], "the hole shows the one behind");
         assert_eq!(found.get(3, 2), [0.5, 0.0, 0.0, 0.5], "half a hole with nothing behind");
+        let mut faint = front.clone();
+        faint.opacity = 0.25;
+        let found = picture(&[region(rectangle(0.0, 0.0, 3.0, 5.0), [0.0; 3]), faint], 5, 5);
+        assert_eq!([found.get(1, 1), found.get(4, 4)], [[0.25, 0.0, 0.0, 1.0], [0.25, 0.0, 0.0, 0.25]]);
         // A hole beyond the outline takes nothing from others.
         front.holes = vec![rectangle(4.0, 0.0, 9.0, 5.0)];
         assert_eq!(picture(&[front], 6, 5).get(5, 2), [0.0; 4]);

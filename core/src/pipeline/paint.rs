@@ -1,6 +1,6 @@
 //! What was painted and traced on each frame of a document, as pictures.
 
-use super::trace::{PLAIN, behind_in};
+use super::strokes::{self, Seen};
 use super::{Picture, PipelineError, RenderJob, fill, frames_of};
 use crate::geometry::Point;
 use crate::project::Document;
@@ -79,6 +79,7 @@ fn add_regions(
         areas: vec![scaled(outline, scale)],
         holes: holes.into_iter().map(|hole| scaled(hole, scale)).collect(),
         colour,
+        opacity: 1.0,
     };
     for drawing in filled {
         to.entry(drawing.frame).or_default().extend(drawing.regions.into_iter().map(region));
@@ -91,23 +92,22 @@ fn add_strokes(
     scale: f64,
     to: &mut BTreeMap<FrameNumber, Vec<Region>>,
 ) -> Result<(), PipelineError> {
-    let traced = document.traced().map_err(|error| fill::field(&error))?;
-    if traced.is_empty() {
-        let found = "traced: found no strokes, expected those that `rototoon trace` writes";
+    let found = strokes::strokes(document)?;
+    if found.is_empty() {
+        let found = "traced: found no strokes, expected those that `rototoon trace` writes, or drawings";
         return Err(PipelineError::Field(found.to_owned()));
     }
-    let plain = PLAIN * document.scene.footage.height as f64 / 540.0;
-    for mut drawing in traced {
-        drawing.strokes.sort_by(behind_in);
-        to.entry(drawing.frame).or_default().extend(drawing.strokes.into_iter().map(|own| drawn(own, plain, scale)));
+    let plain = strokes::plain(document);
+    for (frame, own) in found {
+        to.entry(frame).or_default().extend(own.into_iter().map(|own| drawn(own, plain, scale)));
     }
     Ok(())
 }
 
-/// A traced stroke as an area. Without widths it is `plain` pixels of the footage wide.
-fn drawn(traced: TracedStroke, plain: f64, scale: f64) -> Region {
-    let TracedStroke { track, points, closed, widths, colour, fill, .. } = traced;
-    let lined = !fill || !widths.is_empty();
+/// A stroke as an area. Without widths it is `plain` pixels of the footage wide.
+fn drawn(own: Seen, plain: f64, scale: f64) -> Region {
+    let (name, lined) = (own.id.to_string(), own.is_lined());
+    let TracedStroke { points, closed, widths, colour, fill, .. } = own.stroke;
     let points = scaled(points, scale);
     let widths = if widths.is_empty() { vec![plain; points.len()] } else { widths };
     let radii: Vec<f64> = widths.iter().map(|width| 0.5 * scale * width).collect();
@@ -115,7 +115,7 @@ fn drawn(traced: TracedStroke, plain: f64, scale: f64) -> Region {
     if fill {
         areas.push(points);
     }
-    Region { name: format!("stroke {track}"), areas, holes: Vec::new(), colour: colour.unwrap_or_default() }
+    Region { name, areas, holes: Vec::new(), colour: colour.unwrap_or_default(), opacity: own.opacity as f32 }
 }
 
 fn scaled(points: Vec<Point>, scale: f64) -> Vec<Point> {
@@ -142,8 +142,8 @@ pub fn undrawn(document: &Document, job: &RenderJob) -> Option<String> {
         lacking(there, range.clone(), "painted", "fill")
     });
     let strokes = shows_strokes(&job.picture).then(|| {
-        let there = document.traced().ok()?.iter().map(|drawing| drawing.frame).collect();
-        lacking(there, range, "traced", "trace")
+        let there = strokes::strokes(document).ok()?.into_keys().collect();
+        lacking(there, range, "drawn", "trace")
     });
     let told: Vec<String> = [regions, strokes].into_iter().flatten().flatten().collect();
     (!told.is_empty()).then(|| told.join("; "))

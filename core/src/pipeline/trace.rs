@@ -6,9 +6,8 @@ mod tests;
 
 pub use kept::TraceMemory;
 
+use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of};
-use crate::export::SvgStroke;
-use crate::geometry::{Point, polygon};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
@@ -16,14 +15,10 @@ use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use blake3::Hash;
 use kept::{Numbers, Span, of_picture};
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Width of an exported or rendered stroke without widths, in pixels of 540 lines.
-pub(super) const PLAIN: f64 = 2.0;
 
 /// Traces the drawings of a document in `folder` and puts the strokes into its field `traced`. It runs on the caller's
 /// rayon pool; the result does not depend on the pool.
@@ -76,51 +71,6 @@ pub fn trace(
     found.sort_by_key(|drawing| drawing.frame);
     document.set_traced(&found);
     Ok(())
-}
-
-/// The traced strokes of a document, one for each number.
-pub(super) fn strokes_to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineError> {
-    let traced = document.traced().map_err(|error| PipelineError::Field(error.to_string()))?;
-    let mut strokes: BTreeMap<usize, SvgStroke> = BTreeMap::new();
-    for (frame, stroke) in
-        traced.into_iter().flat_map(|drawing| drawing.strokes.into_iter().map(move |s| (drawing.frame, s)))
-    {
-        let known = strokes.entry(stroke.track).or_insert_with(|| SvgStroke {
-            track: stroke.track,
-            points: BTreeMap::new(),
-            closed: stroke.closed,
-            width: mean(&stroke.widths).unwrap_or(PLAIN * document.scene.footage.height as f64 / 540.0),
-            colour: stroke.colour.unwrap_or_default(),
-            fill: stroke.fill,
-            lined: !stroke.fill || !stroke.widths.is_empty(),
-        });
-        known.points.insert(frame, stroke.points);
-    }
-    let mut strokes: Vec<SvgStroke> = strokes.into_values().collect();
-    let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
-    strokes.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
-    Ok(strokes)
-}
-
-/// The order from back to front: fills are behind lines, and a larger fill is behind a smaller one, such as its hole.
-fn behind(a: (bool, f64), b: (bool, f64)) -> Ordering {
-    match (a.0, b.0) {
-        (true, true) => b.1.total_cmp(&a.1),
-        (fill, other) => other.cmp(&fill),
-    }
-}
-
-/// The same order for the strokes of one frame.
-pub(super) fn behind_in(a: &TracedStroke, b: &TracedStroke) -> Ordering {
-    behind((a.fill, area(&a.points)), (b.fill, area(&b.points)))
-}
-
-fn area(points: &[Point]) -> f64 {
-    polygon::signed_area(points).abs()
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
 /// Tracing at work.

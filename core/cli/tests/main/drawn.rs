@@ -117,3 +117,40 @@ fn frames_with_nothing_to_draw_are_told() {
         );
     }
 }
+
+#[test]
+fn in_betweens_and_drawings_are_drawn_and_exported() {
+    let line = |x: f64| json!([{"points": [[x, 5], [x, 25]], "closed": false, "colour": [0, 0, 1]}]);
+    let drawings = json!([{"frame": 0, "strokes": line(8.0)}, {"frame": 4, "strokes": line(32.0)}]);
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let mut document: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    document["footage"]["last"] = json!(5);
+    fs::write(&path, document.to_string()).unwrap();
+    let tweened = folder.path().join("tweened.json");
+    let run = |words: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(words).output().unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        told(&output)
+    };
+    run(&["tween", path.to_str().unwrap(), "-o", tweened.to_str().unwrap()]);
+
+    let to = folder.path().join("line_%d.png");
+    let said =
+        run(&["render", tweened.to_str().unwrap(), "-o", to.to_str().unwrap(), "--what", "lines", "--scale", "4"]);
+    assert!(said.contains("frame 5: not drawn"), "{said}");
+    // The line stands at 8, 20 and 32 px.
+    for (frame, x) in [(0, 8), (2, 20), (4, 32)] {
+        let picture = image::open(folder.path().join(format!("line_{frame}.png"))).unwrap().to_rgba8();
+        let seen: Vec<u32> = (0..160).filter(|&column| picture.get_pixel(column, 60).0[3] > 0).collect();
+        let middle = f64::from(seen[0] + seen[seen.len() - 1] + 1) / 8.0;
+        assert!((middle - f64::from(x)).abs() < 0.3, "{frame}: {middle}");
+        assert_eq!(picture.get_pixel(4 * x, 60).0[..3], [0, 0, 255]);
+    }
+
+    let to = folder.path().join("lines.svg");
+    run(&["export", tweened.to_str().unwrap(), "-o", to.to_str().unwrap()]);
+    let text = fs::read_to_string(to).unwrap();
+    for id in ["stroke-0", "frame-0-stroke-0", "frame-4-stroke-0"] {
+        assert!(text.contains(&format!("id=\"{id}\"")), "{id}: {text}");
+    }
+}

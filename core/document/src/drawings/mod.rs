@@ -36,13 +36,14 @@
 //!   length.
 //! - `track`: the number of a stroke, the same on all frames.
 
+mod between;
 mod read;
 
+pub use between::DrawnBetween;
 pub use read::{read_pegs, read_timing};
 
 use super::Document;
 use super::fields::{array, wrong};
-use super::save::DECIMALS;
 use super::schema::{Field, TOP};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::FrameNumber;
@@ -149,15 +150,6 @@ pub struct Drawings {
     pub pegs: Vec<DrawnPeg>,
 }
 
-/// A generated drawing between keys.
-#[derive(Clone, Debug, PartialEq)]
-pub struct DrawnBetween {
-    /// The frame.
-    pub frame: FrameNumber,
-    /// Strokes from back to front: track, opacity, stroke.
-    pub strokes: Vec<(usize, f64, DrawnStroke)>,
-}
-
 impl Document {
     /// The drawings, pairs and pegs of the document; empty if it has none.
     ///
@@ -217,23 +209,6 @@ impl Document {
             json!({"frame": d.frame, "strokes": strokes})
         });
         self.set_other_field("drawings", lines(written));
-    }
-
-    /// Puts the results of tweening into the document: matches, as JSON objects, and the drawings between keys.
-    pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
-        let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
-        let written = drawn.iter().map(|between| {
-            let stroke = |(track, opacity, stroke): &(usize, f64, DrawnStroke)| {
-                let mut fields = Map::new();
-                fields.insert("track".into(), json!(track));
-                fields.extend(stroke_fields(stroke, rounded));
-                fields.insert("opacity".into(), json!(rounded(*opacity)));
-                Value::Object(fields)
-            };
-            json!({"frame": between.frame, "strokes": between.strokes.iter().map(stroke).collect::<Vec<_>>()})
-        });
-        self.set_other_field("in_betweens", lines(written));
-        self.set_other_field("matches", lines(matches.into_iter()));
     }
 }
 

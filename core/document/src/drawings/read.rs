@@ -167,7 +167,7 @@ impl Reader {
     }
 }
 
-fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<DrawnStroke, DrawingsError> {
+pub(super) fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<DrawnStroke, DrawingsError> {
     let fields = object(value, place)?;
     let list = array(fields.get("points"), &format!("{place}.points"))?;
     let points = list.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}.points[{i}]")));

@@ -57,10 +57,12 @@ const FILL_OPACITY: f64 = 0.35;
 /// A stroke on several frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SvgStroke {
-    /// Its number.
-    pub track: usize,
+    /// Its name, such as "stroke 7". The id of its path is the same with dashes.
+    pub name: String,
     /// Its points on each frame, in pixels of the footage.
     pub points: BTreeMap<FrameNumber, Vec<Point>>,
+    /// Its opacity, 0 to 1, on frames on which it is not 1.
+    pub opacities: BTreeMap<FrameNumber, f64>,
     /// Whether the last point joins the first.
     pub closed: bool,
     /// Its width in pixels.
@@ -121,7 +123,7 @@ fn part(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
     let colour = palette::hex(part.shown_colour(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
     let style = format!("id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
-    path(out, scene, &style, &escaped(&part.name), options.motion, shape);
+    path(out, scene, &style, (&escaped(&part.name), &BTreeMap::new()), options.motion, shape);
 }
 
 fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
@@ -131,7 +133,7 @@ fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
     };
     let (track, colour) = (fill.track, palette::hex(fill.colour));
     let style = format!("id=\"fill-{track}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"none\"");
-    path(out, scene, &style, &format!("region {track}"), Motion::Hold, shape);
+    path(out, scene, &style, (&format!("region {track}"), &BTreeMap::new()), Motion::Hold, shape);
 }
 
 fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
@@ -142,22 +144,22 @@ fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOpti
         let even = if points.len() == most { points.clone() } else { resample(points, stroke.closed, most) };
         Some(data(&even, stroke.closed))
     };
-    let (track, colour, width) = (stroke.track, palette::hex(stroke.colour), decimal(stroke.width, 2));
+    let (id, colour, width) = (stroke.name.replace(' ', "-"), palette::hex(stroke.colour), decimal(stroke.width, 2));
     let fill = if stroke.fill { colour.as_str() } else { "none" };
     let line = match stroke.lined {
         true => format!("stroke=\"{colour}\" stroke-width=\"{width}\""),
         false => "stroke=\"none\"".into(),
     };
-    let style = format!("id=\"stroke-{track}\" fill=\"{fill}\" {line}");
-    path(out, scene, &style, &format!("stroke {track}"), options.motion, shape);
+    let style = format!("id=\"{id}\" fill=\"{fill}\" {line}");
+    path(out, scene, &style, (&stroke.name, &stroke.opacities), options.motion, shape);
 }
 
-/// A path with its title and its animation. `shape` gives its data on a frame.
+/// A path with its title, its opacities other than 1, and its animation. `shape` gives its data on a frame.
 fn path(
     out: &mut String,
     scene: &Scene,
     style: &str,
-    title: &str,
+    (title, opacities): (&str, &BTreeMap<FrameNumber, f64>),
     motion: Motion,
     shape: impl Fn(FrameNumber) -> Option<String>,
 ) {
@@ -170,6 +172,11 @@ fn path(
     let visible: Vec<_> = shapes.iter().map(|shape| if shape.is_some() { "visible" } else { "hidden" }).collect();
     if visible.contains(&"hidden") {
         animate(out, "visibility", seconds, Motion::Hold, &visible);
+    }
+    if !opacities.is_empty() {
+        let opacity = |frame| decimal(opacities.get(&frame).copied().unwrap_or(1.0), 3).to_string();
+        let all: Vec<String> = (scene.footage.first..=scene.footage.last).map(opacity).collect();
+        animate(out, "opacity", seconds, Motion::Hold, &all.iter().map(String::as_str).collect::<Vec<_>>());
     }
     *out += "</path>\n";
 }
@@ -298,15 +305,25 @@ mod tests {
     fn a_stroke_is_a_path_that_is_hidden_where_it_is_not() {
         let at = |x: f64, count: usize| (0..count).map(|k| Point::new(x + k as f64, 5.0)).collect::<Vec<_>>();
         let points = BTreeMap::from([(1, at(0.0, 2)), (2, at(3.0, 4))]);
-        let red =
-            SvgStroke { track: 7, points, closed: false, width: 2.5, colour: [1.0, 0.0, 0.0], ..SvgStroke::default() };
+        let red = SvgStroke {
+            name: "stroke 7".into(),
+            points,
+            closed: false,
+            width: 2.5,
+            colour: [1.0, 0.0, 0.0],
+            ..SvgStroke::default()
+        };
         let stroke = SvgStroke { lined: true, ..red.clone() };
         let bare = Scene { parts: Vec::new(), ..scene() };
-        let text = svg_with_drawn(&bare, &[], &[stroke], &SvgOptions::default());
+        let text = svg_with_drawn(&bare, &[], &[stroke.clone()], &SvgOptions::default());
         assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
         let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
         let filled = svg_with_drawn(&bare, &[], &[black], &SvgOptions::default());
         assert!(filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" d="), "{filled}");
+        let faint = SvgStroke { opacities: BTreeMap::from([(2, 0.25)]), ..stroke.clone() };
+        let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
+        assert!(faint.contains("attributeName=\"opacity\"") && faint.contains("values=\"1;0.25;1\""), "{faint}");
+        assert!(!text.contains("attributeName=\"opacity\""));
         let values = attribute(&text, "values");
         assert_eq!(values[1], "hidden;visible;hidden");
         let counts: Vec<usize> = values[0].split(';').map(|d| d.split([' ', 'L']).count()).collect();

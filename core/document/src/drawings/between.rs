@@ -1,0 +1,125 @@
+//! Drawings between keys: written by tweening, and read again where they are drawn or exported.
+
+use super::super::Document;
+use super::super::fields::{array, count, frame, given, object, share, wrong};
+use super::super::save::DECIMALS;
+use super::read::stroke;
+use super::{DrawingsError, DrawnStroke, lines, stroke_fields};
+use rototoon_base::scene::FrameNumber;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// A generated drawing between keys.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnBetween {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Strokes from back to front: track, opacity, stroke.
+    pub strokes: Vec<(usize, f64, DrawnStroke)>,
+}
+
+impl Document {
+    /// Puts the results of tweening into the document: matches, as JSON objects, and the drawings between keys.
+    pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
+        let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
+        let written = drawn.iter().map(|between| {
+            let stroke = |(track, opacity, stroke): &(usize, f64, DrawnStroke)| {
+                let mut fields = Map::new();
+                fields.insert("track".into(), json!(track));
+                fields.extend(stroke_fields(stroke, rounded));
+                fields.insert("opacity".into(), json!(rounded(*opacity)));
+                Value::Object(fields)
+            };
+            json!({"frame": between.frame, "strokes": between.strokes.iter().map(stroke).collect::<Vec<_>>()})
+        });
+        self.set_other_field("in_betweens", lines(written));
+        self.set_other_field("matches", lines(matches.into_iter()));
+    }
+
+    /// The drawings between keys; empty if the document has none.
+    ///
+    /// # Errors
+    ///
+    /// The first invalid field.
+    pub fn in_betweens(&self) -> Result<Vec<DrawnBetween>, DrawingsError> {
+        let list = self.other_list("in_betweens")?;
+        let mut drawn: Vec<DrawnBetween> = Vec::new();
+        for (k, value) in list.iter().enumerate() {
+            let between = between(value, k)?;
+            if let Some(last) = drawn.last().filter(|last| last.frame >= between.frame) {
+                let expected = format!("more than {}, that of in_betweens[{}]", last.frame, k - 1);
+                return Err(wrong(&format!("in_betweens[{k}].frame"), &between.frame.to_string(), &expected));
+            }
+            drawn.push(between);
+        }
+        Ok(drawn)
+    }
+}
+
+fn between(value: &Value, k: usize) -> Result<DrawnBetween, DrawingsError> {
+    let place = format!("in_betweens[{k}]");
+    let fields = object(value, &place)?;
+    let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
+    let place = format!("{place} (frame {on})");
+    let read = |(i, value): (usize, &Value)| {
+        let place = format!("{place}.strokes[{i}]");
+        let fields = object(value, &place)?;
+        let track = count(fields.get("track"), &format!("{place}.track"))?;
+        let opacity = given(fields, &place, "opacity", share)?.unwrap_or(1.0);
+        // Pegs have moved it already.
+        Ok((track, opacity, stroke(value, &place, &BTreeMap::new())?))
+    };
+    let strokes = array(fields.get("strokes"), &format!("{place}.strokes"))?.iter().enumerate().map(read);
+    Ok(DrawnBetween { frame: on, strokes: strokes.collect::<Result<_, _>>()? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon_base::geometry::Point;
+
+    fn document(in_betweens: &str) -> Document {
+        let text = format!(
+            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
+            "height": 48}}, "parts": [], "in_betweens": {in_betweens}}}"#
+        );
+        Document::parse(&text, "a.json").unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let stroke = |x: f64, colour| DrawnStroke {
+            points: vec![Point::new(x, 2.0), Point::new(7.5, 3.0)],
+            closed: true,
+            colour,
+            ..DrawnStroke::default()
+        };
+        let drawn = [
+            DrawnBetween {
+                frame: 2,
+                strokes: vec![(5, 0.5, stroke(1.25, None)), (0, 1.0, stroke(3.0, Some([0.5; 3])))],
+            },
+            DrawnBetween { frame: 3, strokes: vec![] },
+        ];
+        let mut document = document("[]");
+        assert_eq!(document.in_betweens().unwrap(), []);
+        document.set_in_betweens(Vec::new(), &drawn);
+        let again = Document::parse(&document.to_json(), "a.json").unwrap();
+        assert_eq!(again.in_betweens().unwrap(), drawn);
+    }
+
+    #[test]
+    fn what_is_invalid_is_named() {
+        let said = |text: &str| document(text).in_betweens().unwrap_err().to_string();
+        assert_eq!(said("[3]"), "in_betweens[0]: found 3, expected an object");
+        let stroke = r#"{"track": 0, "points": [], "closed": false, "opacity": 2}"#;
+        assert!(
+            said(&format!(r#"[{{"frame": 4, "strokes": [{stroke}]}}]"#))
+                .starts_with("in_betweens[0] (frame 4).strokes[0].opacity: found 2, expected"),
+        );
+        assert_eq!(
+            said(r#"[{"frame": 4, "strokes": []}, {"frame": 4, "strokes": []}]"#),
+            "in_betweens[1].frame: found 4, expected more than 4, that of in_betweens[0]"
+        );
+    }
+}

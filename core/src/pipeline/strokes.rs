@@ -1,0 +1,136 @@
+//! The strokes that a document shows on each frame, for pictures and exports.
+//!
+//! A frame shows its traced strokes. Where it has none, it shows those of its in-between, and else those of its drawing.
+
+use super::{PipelineError, fill};
+use crate::export::SvgStroke;
+use crate::geometry::{Point, polygon};
+use crate::project::Document;
+use crate::project::drawings::DrawnStroke;
+use crate::project::traced::TracedStroke;
+use crate::scene::FrameNumber;
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Width of a stroke without widths, in pixels of 540 lines.
+const PLAIN: f64 = 2.0;
+
+/// Which stroke it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Id {
+    /// Its number, which is the same on all frames.
+    Track(usize),
+    /// The frame of its drawing and its index there. Nothing says which stroke it is on other frames.
+    Drawn(FrameNumber, usize),
+}
+
+impl fmt::Display for Id {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Track(track) => write!(f, "stroke {track}"),
+            Self::Drawn(frame, index) => write!(f, "frame {frame} stroke {index}"),
+        }
+    }
+}
+
+/// A stroke on a frame.
+pub(super) struct Seen {
+    pub id: Id,
+    pub stroke: TracedStroke,
+    /// 0 to 1.
+    pub opacity: f64,
+}
+
+impl Seen {
+    /// Whether there is a line along it: fills have one only if they have widths.
+    pub fn is_lined(&self) -> bool {
+        !self.stroke.fill || !self.stroke.widths.is_empty()
+    }
+}
+
+/// The strokes of each frame, from back to front.
+///
+/// # Errors
+///
+/// [`PipelineError::Field`].
+pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<Seen>>, PipelineError> {
+    let drawings = document.drawings().map_err(|error| fill::field(&error))?.drawings;
+    let between = document.in_betweens().map_err(|error| fill::field(&error))?;
+    let traced = document.traced().map_err(|error| fill::field(&error))?;
+    let drawn = |id: Id, opacity: f64, DrawnStroke { points, closed, fill, colour, .. }: DrawnStroke| Seen {
+        id,
+        opacity,
+        stroke: TracedStroke { points, closed, fill, colour, ..TracedStroke::default() },
+    };
+    let mut found: BTreeMap<FrameNumber, Vec<Seen>> = BTreeMap::new();
+    for own in drawings {
+        let strokes = own.strokes.into_iter().enumerate();
+        found.insert(own.frame, strokes.map(|(k, stroke)| drawn(Id::Drawn(own.frame, k), 1.0, stroke)).collect());
+    }
+    for own in between {
+        let strokes = own.strokes.into_iter();
+        let seen = strokes.map(|(track, opacity, stroke)| drawn(Id::Track(track), opacity, stroke));
+        found.insert(own.frame, seen.collect());
+    }
+    for own in traced {
+        let seen = |stroke: TracedStroke| Seen { id: Id::Track(stroke.track), opacity: 1.0, stroke };
+        found.insert(own.frame, own.strokes.into_iter().map(seen).collect());
+    }
+    let key = |own: &Seen| (own.stroke.fill, area(&own.stroke.points));
+    found.values_mut().for_each(|own| own.sort_by(|a, b| behind(key(a), key(b))));
+    Ok(found)
+}
+
+/// The strokes of a document, each with its points on all frames.
+///
+/// # Errors
+///
+/// [`PipelineError::Field`].
+pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineError> {
+    let plain = plain(document);
+    let mut found: BTreeMap<Id, SvgStroke> = BTreeMap::new();
+    for (frame, own) in strokes(document)?.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s)))
+    {
+        let known = found.entry(own.id).or_insert_with(|| SvgStroke {
+            name: own.id.to_string(),
+            points: BTreeMap::new(),
+            opacities: BTreeMap::new(),
+            closed: own.stroke.closed,
+            width: mean(&own.stroke.widths).unwrap_or(plain),
+            colour: own.stroke.colour.unwrap_or_default(),
+            fill: own.stroke.fill,
+            lined: own.is_lined(),
+        });
+        known.points.insert(frame, own.stroke.points);
+        if own.opacity < 1.0 {
+            known.opacities.insert(frame, own.opacity);
+        }
+    }
+    let mut found: Vec<SvgStroke> = found.into_values().collect();
+    let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
+    found.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
+    Ok(found)
+}
+
+/// Width in pixels of a stroke without widths.
+pub(super) fn plain(document: &Document) -> f64 {
+    PLAIN * document.scene.footage.height as f64 / 540.0
+}
+
+/// The order from back to front: fills are behind lines, and a larger fill is behind a smaller one, such as its hole.
+pub(super) fn behind(a: (bool, f64), b: (bool, f64)) -> Ordering {
+    match (a.0, b.0) {
+        (true, true) => b.1.total_cmp(&a.1),
+        (fill, other) => other.cmp(&fill),
+    }
+}
+
+/// The area within an outline, in square pixels.
+pub(super) fn area(points: &[Point]) -> f64 {
+    polygon::signed_area(points).abs()
+}
+
+fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
