@@ -5,7 +5,6 @@ use super::{Picture, PipelineError, RenderJob, fill, frames_of};
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::fills::FilledRegion;
-use crate::project::traced::TracedStroke;
 use crate::render::paint::{Region, paint, paint_picture, painted, shares};
 use crate::render::{EncodeError, Format, stroke};
 use crate::scene::{Footage, FrameNumber, Raster};
@@ -15,30 +14,94 @@ use std::ops::RangeInclusive;
 /// Number of frames that a message names.
 const NAMED: usize = 5;
 
-/// What a picture shows of each frame, from back to front: painted regions, solid shapes, lines. Empty for pictures of
-/// something else.
-///
-/// # Errors
-///
-/// [`PipelineError::Field`] if the document has nothing of what the picture shows, or it cannot be read;
-/// [`PipelineError::Option`] if the job names parts, which regions and strokes do not have.
-pub(super) fn of(document: &Document, job: &RenderJob) -> Result<BTreeMap<FrameNumber, Vec<Region>>, PipelineError> {
-    let (regions, strokes) = (shows_regions(&job.picture), shows_strokes(&job.picture));
-    let mut found = BTreeMap::new();
-    if !regions && !strokes {
-        return Ok(found);
+/// What the pictures of a job show of painted regions and strokes. Nothing for pictures of something else.
+#[derive(Default)]
+pub(super) struct Shown {
+    regions: BTreeMap<FrameNumber, Vec<FilledRegion>>,
+    strokes: BTreeMap<FrameNumber, Vec<Seen>>,
+    /// Width of a stroke without widths, in pixels of the footage.
+    plain: f64,
+    /// Pixels of the picture for each pixel of the footage.
+    scale: f64,
+}
+
+impl Shown {
+    /// Reads what the pictures of a job show.
+    ///
+    /// # Errors
+    ///
+    /// [`PipelineError::Field`] if the document has nothing of it, or it cannot be read; [`PipelineError::Option`] if the job
+    /// names parts, which regions and strokes do not have.
+    pub fn of(document: &Document, job: &RenderJob) -> Result<Self, PipelineError> {
+        let (regions, strokes) = (shows_regions(&job.picture), shows_strokes(&job.picture));
+        let mut shown = Self { plain: strokes::plain(document), scale: job.scale, ..Self::default() };
+        if let Some(name) = job.parts.as_ref().and_then(|names| names.first()).filter(|_| regions || strokes) {
+            let reason = format!("found {name:?}, expected none: painted regions and strokes belong to no part");
+            return Err(PipelineError::option("parts", reason));
+        }
+        let missing =
+            |field: &str, expected: &str| PipelineError::Field(format!("{field}: found none, expected {expected}"));
+        if regions {
+            let filled = document.filled().map_err(|error| fill::field(&error))?;
+            shown.regions = filled.into_iter().map(|drawing| (drawing.frame, drawing.regions)).collect();
+            if shown.regions.is_empty() {
+                return Err(missing("filled", "the painted regions that `rototoon fill` writes"));
+            }
+        }
+        if strokes {
+            shown.strokes = strokes::strokes(document)?;
+            if shown.strokes.is_empty() {
+                return Err(missing("traced", "the strokes that `rototoon trace` writes, or drawings"));
+            }
+        }
+        Ok(shown)
     }
-    if let Some(name) = job.parts.as_ref().and_then(|names| names.first()) {
-        let reason = format!("found {name:?}, expected none: painted regions and traced strokes belong to no part");
-        return Err(PipelineError::option("parts", reason));
+
+    /// What is shown on a frame, from back to front: painted regions, solid shapes, lines.
+    fn on(&self, frame: FrameNumber) -> Vec<Region> {
+        let regions = self.regions.get(&frame).into_iter().flatten().map(|region| self.region(region));
+        regions.chain(self.strokes.get(&frame).into_iter().flatten().map(|seen| self.stroke(seen))).collect()
     }
-    if regions {
-        add_regions(document, job.scale, &mut found)?;
+
+    fn region(&self, FilledRegion { outline, holes, colour, track, .. }: &FilledRegion) -> Region {
+        Region {
+            name: format!("region {track}"),
+            areas: vec![self.scaled(outline)],
+            holes: holes.iter().map(|hole| self.scaled(hole)).collect(),
+            colour: *colour,
+            opacity: 1.0,
+        }
     }
-    if strokes {
-        add_strokes(document, job.scale, &mut found)?;
+
+    fn stroke(&self, seen: &Seen) -> Region {
+        let own = &seen.stroke;
+        let points = self.scaled(&own.points);
+        let plain = vec![self.plain; points.len()];
+        let widths = if own.widths.is_empty() { &plain } else { &own.widths };
+        let radii: Vec<f64> = widths.iter().map(|width| 0.5 * self.scale * width).collect();
+        let mut areas: Vec<Vec<Point>> =
+            if seen.is_lined() { stroke::areas(&points, &radii, own.closed) } else { Vec::new() };
+        if own.fill {
+            areas.push(points);
+        }
+        let (name, colour) = (seen.id.to_string(), own.colour.unwrap_or_default());
+        Region { name, areas, holes: Vec::new(), colour, opacity: seen.opacity as f32 }
     }
-    Ok(found)
+
+    fn scaled(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|p| self.scale * *p).collect()
+    }
+
+    /// What is shown on a frame, on nothing, as bytes of a file of `size`.
+    pub fn alone(&self, frame: FrameNumber, size: &Footage, format: Format) -> Result<Vec<u8>, EncodeError> {
+        paint_picture(&self.on(frame), size.width, size.height, format)
+    }
+
+    /// The drawing of a frame over what is shown there.
+    pub fn under(&self, frame: FrameNumber, drawing: &Raster<[f32; 4]>) -> Raster<[f32; 4]> {
+        let own = self.on(frame);
+        painted(drawing, &paint(&own, &shares(&own, drawing.width(), drawing.height())))
+    }
 }
 
 /// The footage with the size of a job's pictures.
@@ -62,75 +125,6 @@ fn shows_regions(picture: &Picture) -> bool {
 
 fn shows_strokes(picture: &Picture) -> bool {
     matches!(picture, Picture::Lines | Picture::Cel)
-}
-
-fn add_regions(
-    document: &Document,
-    scale: f64,
-    to: &mut BTreeMap<FrameNumber, Vec<Region>>,
-) -> Result<(), PipelineError> {
-    let filled = document.filled().map_err(|error| fill::field(&error))?;
-    if filled.is_empty() {
-        let found = "filled: found no painted regions, expected those that `rototoon fill` writes";
-        return Err(PipelineError::Field(found.to_owned()));
-    }
-    let region = |FilledRegion { outline, holes, colour, track, .. }| Region {
-        name: format!("region {track}"),
-        areas: vec![scaled(outline, scale)],
-        holes: holes.into_iter().map(|hole| scaled(hole, scale)).collect(),
-        colour,
-        opacity: 1.0,
-    };
-    for drawing in filled {
-        to.entry(drawing.frame).or_default().extend(drawing.regions.into_iter().map(region));
-    }
-    Ok(())
-}
-
-fn add_strokes(
-    document: &Document,
-    scale: f64,
-    to: &mut BTreeMap<FrameNumber, Vec<Region>>,
-) -> Result<(), PipelineError> {
-    let found = strokes::strokes(document)?;
-    if found.is_empty() {
-        let found = "traced: found no strokes, expected those that `rototoon trace` writes, or drawings";
-        return Err(PipelineError::Field(found.to_owned()));
-    }
-    let plain = strokes::plain(document);
-    for (frame, own) in found {
-        to.entry(frame).or_default().extend(own.into_iter().map(|own| drawn(own, plain, scale)));
-    }
-    Ok(())
-}
-
-/// A stroke as an area. Without widths it is `plain` pixels of the footage wide.
-fn drawn(own: Seen, plain: f64, scale: f64) -> Region {
-    let (name, lined) = (own.id.to_string(), own.is_lined());
-    let TracedStroke { points, closed, widths, colour, fill, .. } = own.stroke;
-    let points = scaled(points, scale);
-    let widths = if widths.is_empty() { vec![plain; points.len()] } else { widths };
-    let radii: Vec<f64> = widths.iter().map(|width| 0.5 * scale * width).collect();
-    let mut areas: Vec<Vec<Point>> = if lined { stroke::areas(&points, &radii, closed) } else { Vec::new() };
-    if fill {
-        areas.push(points);
-    }
-    Region { name, areas, holes: Vec::new(), colour: colour.unwrap_or_default(), opacity: own.opacity as f32 }
-}
-
-fn scaled(points: Vec<Point>, scale: f64) -> Vec<Point> {
-    points.into_iter().map(|p| scale * p).collect()
-}
-
-/// The paint of a frame alone, as bytes of a file. A frame without regions is empty.
-pub(super) fn alone(footage: &Footage, own: Option<&Vec<Region>>, format: Format) -> Result<Vec<u8>, EncodeError> {
-    paint_picture(own.map_or(&[], |own| &own[..]), footage.width, footage.height, format)
-}
-
-/// A drawing over the paint of its frame.
-pub(super) fn under(drawing: &Raster<[f32; 4]>, own: Option<&Vec<Region>>) -> Raster<[f32; 4]> {
-    let own = own.map_or(&[][..], |own| &own[..]);
-    painted(drawing, &paint(own, &shares(own, drawing.width(), drawing.height())))
 }
 
 /// The frames of a job's range on which the document has nothing of what the picture shows, as a message for the user. `None`

@@ -1,13 +1,12 @@
 //! Pictures of a document: which ones, of which frames, and into which files.
 
-use super::{PipelineError, frames, frames_of, memory, paint};
+use super::paint::{Shown, sized};
+use super::{PipelineError, frames, frames_of, memory};
 use crate::image::Sequence;
 use crate::project::{Document, Inputs, write_whole};
-use crate::render::paint::Region;
 use crate::render::{self, Format, OverlayOptions};
 use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -60,8 +59,7 @@ struct Rendering {
     format: Format,
     /// The footage, with the size of the pictures.
     size: Footage,
-    /// The painted regions and strokes of each frame that the picture shows.
-    drawn: BTreeMap<FrameNumber, Vec<Region>>,
+    shown: Shown,
 }
 
 /// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
@@ -114,10 +112,10 @@ fn picture(
         Picture::Layers => render::matte_layers(&document.scene, frame, parts),
         Picture::Parts => render::matte_parts(&document.scene, frame, parts),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
-        Picture::Paint | Picture::Lines | Picture::Cel => paint::alone(&plan.size, plan.drawn.get(&frame), plan.format),
+        Picture::Paint | Picture::Lines | Picture::Cel => plan.shown.alone(frame, &plan.size, plan.format),
         Picture::Painted => {
             let drawing = sequence.layer(frame)?;
-            render::encode::layer(&paint::under(&drawing, plan.drawn.get(&frame)), plan.format)
+            render::encode::layer(&plan.shown.under(frame, &drawing), plan.format)
         }
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
@@ -151,13 +149,14 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     for (frame, path) in &frames {
         inputs.check(path).map_err(|error| PipelineError::Request(format!("frame {frame}: {error}")))?;
     }
-    let drawn = paint::of(document, job)?;
+    // First, because regions and strokes have no parts to be chosen.
+    let shown = Shown::of(document, job)?;
     Ok(Rendering {
         frames,
         parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
         format,
-        size: paint::sized(footage, job)?,
-        drawn,
+        size: sized(footage, job)?,
+        shown,
     })
 }
 

@@ -140,6 +140,7 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         points: s.points.clone(),
         closed: s.closed,
         colour: s.colour,
+        fill: s.fill,
         material: s.material,
         layer: s.layer,
     };
@@ -214,8 +215,8 @@ pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
-    let Stroke { points, closed, colour, material, layer } = drawn.stroke;
-    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill: false, colour, material, layer, peg: None })
+    let Stroke { points, closed, colour, fill, material, layer } = drawn.stroke;
+    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill, colour, material, layer, peg: None })
 }
 
 fn written([frame, next]: [FrameNumber; 2], held: bool, matching: &Matching) -> Value {

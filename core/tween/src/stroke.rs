@@ -13,6 +13,8 @@ pub struct Stroke {
     pub colour: Option<[f32; 3]>,
     /// Number of the material. Matching compares materials where both strokes have one.
     pub material: Option<u32>,
+    /// Whether it is the outline of a solid shape, which is filled with the colour. Matching does not look at it.
+    pub fill: bool,
     /// Number of the layer. Matching adds a cost where both strokes have a layer and the layers differ.
     pub layer: Option<u32>,
 }

@@ -112,10 +112,23 @@ fn frames_with_nothing_to_draw_are_told() {
         assert_eq!(output.status.code(), Some(1));
         let said = told(&output);
         assert!(
-            said.contains(&format!("{field}: found no ")) && said.contains(&format!("`rototoon {command}`")),
+            said.contains(&format!("{field}: found none")) && said.contains(&format!("`rototoon {command}`")),
             "{said}"
         );
     }
+}
+
+#[test]
+fn a_solid_shape_is_solid_between_its_keys() {
+    let square = |x: f64| json!([[x, 8], [x + 10.0, 8], [x + 10.0, 18], [x, 18]]);
+    let solid = |x: f64| json!([{"points": square(x), "closed": true, "fill": true, "colour": [1, 0, 0]}]);
+    let drawings = json!([{"frame": -1, "strokes": solid(4.0)}, {"frame": 1, "strokes": solid(20.0)}]);
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let tweened = folder.path().join("tweened.json");
+    let words = ["tween", path.to_str().unwrap(), "-o", tweened.to_str().unwrap()];
+    assert!(Command::new(env!("CARGO_BIN_EXE_rototoon")).args(words).status().unwrap().success());
+    let lines = picture(&tweened, "lines", &[]);
+    assert_eq!([lines.get_pixel(17, 13).0, lines.get_pixel(8, 13).0], [[255, 0, 0, 255], [0; 4]]);
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn what_was_not_painted_is_told_when_it_is_rendered() {
     let output = run("render", &path, &to, &["--what", "paint"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(
-        told(&output).contains("filled: found no painted regions, expected those that `rototoon fill`"),
+        told(&output).contains("filled: found none, expected the painted regions that `rototoon fill`"),
         "{}",
         told(&output)
     );
@@ -150,7 +150,7 @@ fn what_was_not_painted_is_told_when_it_is_rendered() {
     let output = run("render", &some, &to, &["--what", "paint", "--parts", "arm"]);
     assert!(!output.status.success());
     assert!(
-        told(&output).contains("found \"arm\", expected none: painted regions and traced strokes belong to no part"),
+        told(&output).contains("found \"arm\", expected none: painted regions and strokes belong to no part"),
         "{}",
         told(&output)
     );

@@ -425,6 +425,8 @@ impl Sequence {
             points: Vec::new(),
             closed: self.tracks[t].closed,
             colour,
+            // Pieces of an outline are open, and enclose nothing.
+            fill: self.tracks[t].closed && own.is_some_and(|s| s.fill),
             material: own.and_then(|s| s.material),
             layer: own.and_then(|s| s.layer),
         }
