@@ -4,7 +4,8 @@
 //! need more memory than there is ends with an error here; without it the process would be aborted. The needs below
 //! were measured as the growth of peak memory from 500 to 4000 pixels square, and rounded up.
 
-use super::{Picture, PipelineError};
+use super::PipelineError;
+use super::picture::Picture;
 use crate::memory;
 use crate::scene::Footage;
 

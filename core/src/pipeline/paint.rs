@@ -1,7 +1,8 @@
 //! What was painted and traced on each frame of a document, as pictures.
 
+use super::picture::{Picture, RenderJob};
 use super::strokes::{self, Seen};
-use super::{Picture, PipelineError, RenderJob, fill, frames_of};
+use super::{PipelineError, fill, frames_of};
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::fills::FilledRegion;
