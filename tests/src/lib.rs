@@ -13,6 +13,7 @@
 //! - [`sheet`]: contact sheets
 //! - [`stylebench`]: measurements of limbs, overlap order and translation
 //! - [`tweening`]: measurements of matching and in-betweens
+//! - [`filling`]: the benchmark of fills
 //! - [`chart`], [`drawing`], [`lettering`]: plots as SVG and PNG
 
 #![forbid(unsafe_code)]
@@ -22,6 +23,7 @@ pub mod benchmark;
 pub mod chart;
 pub mod doll;
 pub mod drawing;
+pub mod filling;
 pub mod golden;
 pub mod grain;
 pub mod lettering;

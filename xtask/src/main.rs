@@ -72,6 +72,9 @@ enum Command {
     /// Measure shots a minute and memory of `rototoon batch`, and what a season costs.
     #[command(disable_help_flag = true)]
     BenchBatch(measure::Rest),
+    /// Measure fills on line drawings with known colours, with tables and sheets in target/bench-fill.
+    #[command(disable_help_flag = true)]
+    BenchFill(measure::Rest),
     /// Measure curve fitting beside its peers on six outlines.
     #[command(disable_help_flag = true)]
     BenchFit(measure::Rest),
@@ -148,6 +151,7 @@ fn main() -> anyhow::Result<()> {
         Command::Bundle => bundle::bundle(&bundle::Packager::from_wheel()?, bundle::Build::Installed).map(|_| ()),
         Command::Generate { check } => generate::generate(check),
         Command::BenchBatch(rest) => measure::run("bench-batch", &rest),
+        Command::BenchFill(rest) => measure::run("bench-fill", &rest),
         Command::BenchFit(rest) => measure::run("bench-fit", &rest),
         Command::BenchStyle(rest) => measure::run("bench-style", &rest),
         Command::BenchTracking(rest) => measure::run("bench-tracking", &rest),

@@ -5,6 +5,7 @@
 //! optimised. Each set and preset runs in a process of its own, so that all start with cold caches and peak memory is
 //! measured separately. An interrupted run leaves the files of the finished measurements.
 
+use crate::sets;
 use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use rototoon_tests::benchmark::growth::{self, Measured, Sample};
@@ -157,19 +158,12 @@ impl Bench {
         if dirs.is_empty() {
             return own::write(&self.out);
         }
-        let mut sets: Vec<(String, PathBuf)> = Vec::new();
-        for dir in dirs {
-            let folder = dir.canonicalize().with_context(|| format!("no folder {dir:?}"))?;
+        sets::named(dirs, |dir| {
             for file in ["project.json", "truth.json"] {
-                ensure!(folder.join(file).is_file(), "{dir:?} contains no {file}");
+                ensure!(dir.join(file).is_file(), "{dir:?} contains no {file}");
             }
-            let name = folder.file_name().map_or("set".into(), |name| name.to_string_lossy().into_owned());
-            let taken = |name: &str| sets.iter().any(|(other, _)| other == name);
-            let names = std::iter::once(name.clone()).chain((2..).map(|n| format!("{name}-{n}")));
-            let name = names.into_iter().find(|name| !taken(name)).unwrap_or_default();
-            sets.push((name, folder));
-        }
-        Ok(sets)
+            Ok(())
+        })
     }
 
     fn run(&self, set: &str, folder: &Path, way: &Way, no_edits: bool) -> Result<Outcome> {

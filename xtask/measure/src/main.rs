@@ -2,12 +2,14 @@
 //! commands are built in seconds.
 
 mod bench_batch;
+mod bench_fill;
 mod bench_fit;
 mod bench_style;
 mod bench_tracking;
 mod bench_tween;
 mod bless;
 mod report;
+mod sets;
 
 use clap::{Parser, Subcommand};
 use rototoon_tests::{doll, sample};
@@ -24,6 +26,8 @@ struct Arguments {
 enum Command {
     /// Measure shots a minute and memory of `rototoon batch`, and what a season costs, with tables in target/bench-batch.
     BenchBatch(bench_batch::Arguments),
+    /// Measure fills on line drawings with known colours, with tables and sheets in target/bench-fill.
+    BenchFill(bench_fill::Arguments),
     /// Measure curve fitting beside its peers on six outlines.
     BenchFit(bench_fit::Arguments),
     /// Measure factorisation beside scikit-learn, reshaping beside libigl, and the style paper's experiments, with plots in target/style.
@@ -51,6 +55,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::BenchBatch(arguments) => bench_batch::bench_batch(&arguments),
+        Command::BenchFill(arguments) => bench_fill::bench_fill(&arguments),
         Command::BenchFit(arguments) => bench_fit::bench_fit(&arguments),
         Command::BenchStyle(arguments) => bench_style::bench_style(&arguments),
         Command::BenchTracking(arguments) => bench_tracking::bench_tracking(&arguments),
