@@ -138,7 +138,10 @@ mod tests {
         let mask = mask(&lines);
         let inked = |x: usize| (0..200).filter(|&y| mask.get(x, y)).collect::<Vec<_>>();
         for x in [10, 100, 200, 390] {
-            assert_eq!(inked(x), [60, 61, 62], "column {x}");
+            let (found, line) = (inked(x), [60, 61, 62]);
+            // The blur may add a row on each side.
+            let near = found.iter().all(|y| (59..=63).contains(y));
+            assert!(near && line.iter().all(|y| found.contains(y)), "column {x}: {found:?}");
         }
     }
 

@@ -18,7 +18,7 @@ use tiny_skia::{Color, Pixmap};
 
 /// Lines of the film that the benchmark draws.
 pub const LINES: u32 = HEIGHT;
-/// Number of drawings.
+/// Number of drawings of the film that the benchmark draws.
 pub const COUNT: usize = DRAWINGS.len();
 
 const INK: u32 = 0x1c1820;
@@ -43,18 +43,18 @@ impl Shape {
     }
 }
 
-/// Writes `frames/frame_000.png` to `frames/frame_011.png` and the same names in `colour/` into `folder`, and makes the folder if
-/// needed. The pictures have `lines` rows and are 16 : 9.
+/// Writes the first `count` drawings, `frames/frame_000.png` and so on, and the same names in `colour/` into `folder`, and makes the folder if
+/// needed. The pictures have `lines` rows and are 16 : 9. There are at most [`COUNT`] drawings.
 ///
 /// # Errors
 ///
 /// A folder or a file that cannot be written, and a size that no picture can have.
-pub fn write(folder: &Path, lines: u32) -> Result<()> {
+pub fn write(folder: &Path, lines: u32, count: usize) -> Result<()> {
     for name in ["frames", "colour"] {
         let made = folder.join(name);
         std::fs::create_dir_all(&made).with_context(|| format!("cannot make the folder {made:?}"))?;
     }
-    DRAWINGS.par_iter().enumerate().try_for_each(|(k, pose)| {
+    DRAWINGS[..count.min(COUNT)].par_iter().enumerate().try_for_each(|(k, pose)| {
         let shapes = shapes(&Rig::new(pose), k);
         for (name, coloured) in [("frames", false), ("colour", true)] {
             let path = folder.join(name).join(format!("frame_{k:03}.png"));
@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn regions_move_appear_and_vanish() {
         let folder = tempfile::tempdir().unwrap();
-        write(folder.path(), LINES).unwrap();
+        write(folder.path(), LINES, COUNT).unwrap();
         let set = Set::find(folder.path()).unwrap();
         assert_eq!((set.lines.len(), set.size), (COUNT, (WIDTH as usize, HEIGHT as usize)));
         let drawings: Vec<Truth> = (0..COUNT).map(|k| Truth::of(&set.drawing(k).unwrap())).collect();

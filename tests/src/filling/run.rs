@@ -90,16 +90,16 @@ mod tests {
     #[test]
     fn the_drawn_film_is_painted_and_scored() {
         let folder = tempfile::tempdir().unwrap();
-        own::write(folder.path(), 216).unwrap();
+        own::write(folder.path(), 270, 5).unwrap();
         let sheet = folder.path().join("sheet.png");
         let found = measure(folder.path(), "drawn", &sheet).unwrap();
         let score = found.score;
-        assert_eq!((found.drawings, found.set.as_str()), (own::COUNT, "drawn"));
-        assert!(found.clicks >= 15 && score.regions >= 11 * 15, "{found:?}");
+        assert_eq!((found.drawings, found.set.as_str()), (5, "drawn"));
+        assert!(found.clicks >= 15 && score.regions >= 4 * 15, "{found:?}");
         assert!(score.known < score.regions, "the first drawing does not have every colour");
         let share = |part: usize, of: usize| part as f64 / of as f64;
         let (right, held) = (share(score.right, score.regions), share(score.held, score.regions));
-        assert!(right > 0.7 && held < right - 0.1, "{right} right, {held} by colours left where they are");
+        assert!(right > 0.55 && held < right - 0.2, "{right} right, {held} by colours left where they are");
         assert!(share(score.right_area, score.area) > 0.8, "{score:?}");
         assert_eq!(score.bands.iter().map(|band| band.0).sum::<usize>(), score.regions);
         assert!(image::open(sheet).unwrap().width() > 480);

@@ -30,7 +30,7 @@ pub fn bench_fill(arguments: &Arguments) -> Result<()> {
     if sets.is_empty() {
         sets = vec![("drawn".into(), out.join("drawn"))];
         empty_folder(&sets[0].1)?;
-        own::write(&sets[0].1, own::LINES)?;
+        own::write(&sets[0].1, own::LINES, own::COUNT)?;
     }
     eprintln!("building the optimised benchmark");
     run(cargo().args(["build", "--quiet", "--release", "-p", "rototoon-tests", "--bin", "bench-fill"]))?;
