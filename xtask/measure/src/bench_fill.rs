@@ -68,7 +68,7 @@ mod tests {
         let dirs = ["a/film", "b/film"].map(|name| base.join(name));
         let arguments = Arguments { dirs: dirs.to_vec() };
         let missing = bench_fill(&arguments).unwrap_err().to_string();
-        assert!(missing.starts_with("no folder") && missing.contains("film"), "{missing}");
+        assert!(missing.contains("film\": found no folder, expected that of a set"), "{missing}");
         dirs.iter().for_each(|dir| std::fs::create_dir_all(dir).unwrap());
         let empty = bench_fill(&arguments).unwrap_err().to_string();
         assert!(empty.contains("frames\": found no folder, expected a folder with line drawings"), "{empty}");

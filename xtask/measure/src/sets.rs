@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 pub fn named(dirs: &[PathBuf], check: impl Fn(&Path) -> Result<()>) -> Result<Vec<(String, PathBuf)>> {
     let mut sets: Vec<(String, PathBuf)> = Vec::new();
     for dir in dirs {
-        let folder = dir.canonicalize().with_context(|| format!("no folder {dir:?}"))?;
+        let folder = dir.canonicalize().with_context(|| format!("{dir:?}: found no folder, expected that of a set"))?;
         check(dir)?;
         let name = folder.file_name().map_or("set".into(), |name| name.to_string_lossy().into_owned());
         let taken = |name: &str| sets.iter().any(|(other, _)| other == name);
