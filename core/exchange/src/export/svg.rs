@@ -315,7 +315,7 @@ mod tests {
         };
         let stroke = SvgStroke { lined: true, ..red.clone() };
         let bare = Scene { parts: Vec::new(), ..scene() };
-        let text = svg_with_drawn(&bare, &[], &[stroke.clone()], &SvgOptions::default());
+        let text = svg_with_drawn(&bare, &[], std::slice::from_ref(&stroke), &SvgOptions::default());
         assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
         let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
         let filled = svg_with_drawn(&bare, &[], &[black], &SvgOptions::default());
