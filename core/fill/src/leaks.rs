@@ -45,7 +45,8 @@ pub fn leaks(from: &Layout, paint: &Paint, to: &Layout, back: &Shifts) -> Vec<(u
     mixed.filter_map(|(region, own)| Some((region, places(region, &own, to, &seen)?))).collect()
 }
 
-/// The places between which a region is split: the deepest one of each of its areas that a gap parts from the largest.
+/// The places between which a region is split: the deepest one of each of its areas, from the largest on, that gaps part from all
+/// larger ones. Areas that no gap parts are one, and the largest speaks for it. `None` if there is only one.
 fn places(region: usize, own: &[(usize, usize, f64)], to: &Layout, seen: &Raster<u32>) -> Option<Vec<Point>> {
     let mask = to.inside.map(|label| label as usize == region);
     let depth = distance::inside(&mask);
@@ -53,17 +54,26 @@ fn places(region: usize, own: &[(usize, usize, f64)], to: &Layout, seen: &Raster
         let cells = (0..seen.data().len()).filter(|&at| mask.data()[at] && seen.data()[at] as usize == source);
         cells.map(|at| (depth.data()[at], at)).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
     };
-    let &(main, largest, _) = own.iter().max_by(|a, b| a.2.total_cmp(&b.2).then(b.1.cmp(&a.1)))?;
-    let start = deepest(largest)?;
-    let levels = levels(&depth, start.1);
-    let narrow = |end: Deep| {
-        let level = levels[end.1];
-        f64::from(level) <= GAP * to.unit && level < 0.5 * start.0.min(end.0)
-    };
-    let others = own.iter().filter(|other| other.0 != main).filter_map(|other| deepest(other.1));
-    let ends: Vec<Deep> = others.filter(|&end| narrow(end)).collect();
+    let mut own = own.to_vec();
+    own.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.1.cmp(&b.1)));
+    let main = own.first()?.0;
+    let mut found: Vec<(Deep, Vec<f32>)> = Vec::new();
+    for &(colour, source, _) in &own {
+        // Other areas of the largest one's colour need no part of their own.
+        if colour == main && !found.is_empty() {
+            continue;
+        }
+        let Some(end) = deepest(source) else { continue };
+        let parted = |(start, levels): &(Deep, Vec<f32>)| {
+            let level = levels[end.1];
+            f64::from(level) <= GAP * to.unit && level < 0.5 * start.0.min(end.0)
+        };
+        if found.iter().all(parted) {
+            found.push((end, levels(&depth, end.1)));
+        }
+    }
     let place = |at: usize| to.place(at % seen.width(), at / seen.width());
-    (!ends.is_empty()).then(|| [start].iter().chain(&ends).map(|end| place(end.1)).collect())
+    (found.len() > 1).then(|| found.iter().map(|(end, _)| place(end.1)).collect())
 }
 
 /// For each cell the depth of the shallowest cell on the deepest way to it from a start; 0 where there is no way.
@@ -121,6 +131,26 @@ mod tests {
         assert!((places[0].x < 200.0) != (places[1].x < 200.0), "one place in each room: {places:?}");
         assert!(leaks(&closed, &paint, &rooms(120), &still).is_empty(), "a wide opening is no gap");
         assert!(leaks(&closed, &paint, &closed, &still).is_empty());
+    }
+
+    #[test]
+    fn areas_of_one_room_do_not_split_it_among_them() {
+        // The painted drawing has a second wall, in the right room. It has gone.
+        let ink = |second: bool| {
+            move |x: usize, y: usize| {
+                let outer = x.abs_diff(200).max(y.abs_diff(270)) == 150;
+                let wall = x == 200 && y.abs_diff(270) < 150 && (second || 2 * y.abs_diff(270) >= 6);
+                outer || wall || (second && y == 200 && (200..350).contains(&x))
+            }
+        };
+        let closed = Layout::new(&Regions::new(&Raster::from_fn(400, 540, ink(true))));
+        let open = Layout::new(&Regions::new(&Raster::from_fn(400, 540, ink(false))));
+        assert_eq!([closed.figures.len(), open.figures.len()], [5, 3]);
+        let mut paint = Paint::nothing(4, 4);
+        (1..5).for_each(|region| paint.colours[region][region - 1] = 1.0);
+        let found = leaks(&closed, &paint, &open, &Shifts::new(&[], 400, 540, 1.0));
+        let [(_, places)] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!(places.len(), 2, "one place in each room: {places:?}");
     }
 
     #[test]
