@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("render")
-        .about("Draws the contours over the footage, the parts' matte, the parts cut out, a picture of part ids, painted regions, or traced strokes")
+        .about("Draws the contours over the footage, the parts' matte, the parts cut out, a picture of part ids, painted regions, or strokes")
         .arg(arguments::project())
         .arg(arguments::output(
             "PATTERN",
@@ -63,7 +63,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         scale: arguments::number(given, "scale"),
         output: output.to_owned(),
     };
-    let drawn = matches!(job.picture, Picture::Paint | Picture::Painted | Picture::Lines | Picture::Cel);
+    let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     check_writable(&probed(output))?;
     progress::run(arguments::threads(given), |bar| {

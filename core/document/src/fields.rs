@@ -103,6 +103,30 @@ pub(super) fn point(value: Option<&Value>, place: &str) -> Result<Point, FieldEr
     point.filter(fits).ok_or_else(|| wrong(place, &described(value), expected))
 }
 
+/// Reads a list with an entry for each frame; the frames rise. `name` is the list's and `content` that of an entry's own list.
+/// `read` gets the frame, that list and its place.
+pub(super) fn by_frame<T>(
+    list: &[Value],
+    [name, content]: [&str; 2],
+    read: impl Fn(FrameNumber, &[Value], &str) -> Result<T, FieldError>,
+) -> Result<Vec<T>, FieldError> {
+    let mut out = Vec::new();
+    let mut last: Option<FrameNumber> = None;
+    for (k, value) in list.iter().enumerate() {
+        let place = format!("{name}[{k}]");
+        let fields = object(value, &place)?;
+        let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
+        if let Some(last) = last.filter(|&last| last >= on) {
+            let expected = format!("more than {last}, that of {name}[{}]", k - 1);
+            return Err(wrong(&format!("{place}.frame"), &on.to_string(), &expected));
+        }
+        last = Some(on);
+        let place = format!("{place} (frame {on}).{content}");
+        out.push(read(on, array(fields.get(content), &place)?, &place)?);
+    }
+    Ok(out)
+}
+
 /// Reads an optional field.
 pub(super) fn given<T>(
     fields: &Map<String, Value>,

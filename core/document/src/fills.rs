@@ -13,7 +13,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, colour, count, frame, given, object, point, share, wrong};
+use super::fields::{FieldError, array, by_frame, colour, count, given, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -84,7 +84,7 @@ impl Document {
             let click = |(i, value): (usize, &Value)| click(value, &format!("{place}[{i}]"));
             Ok(FillClicks { frame: on, clicks: list.iter().enumerate().map(click).collect::<Result<_, _>>()? })
         };
-        by_frame(&self.other_list("fills")?, "fills", read)
+        by_frame(&self.other_list("fills")?, ["fills", "regions"], read)
     }
 
     /// Puts clicks into the document, in place of earlier ones. Without any, the field is removed.
@@ -103,7 +103,7 @@ impl Document {
     ///
     /// The first invalid field.
     pub fn filled(&self) -> Result<Vec<FilledDrawing>, FieldError> {
-        by_frame(&self.other_list("filled")?, "filled", |on, list, place| {
+        by_frame(&self.other_list("filled")?, ["filled", "regions"], |on, list, place| {
             let mut tracks = BTreeSet::new();
             let read = |(i, value): (usize, &Value)| {
                 let place = format!("{place}[{i}]");
@@ -127,29 +127,6 @@ impl Document {
         });
         self.set_other_field("filled", lines(written));
     }
-}
-
-/// Reads a list with an entry for each frame. `read` gets the frame, its regions and their place.
-fn by_frame<T>(
-    list: &[Value],
-    name: &str,
-    read: impl Fn(FrameNumber, &[Value], &str) -> Result<T, FieldError>,
-) -> Result<Vec<T>, FieldError> {
-    let mut out = Vec::new();
-    let mut last: Option<FrameNumber> = None;
-    for (k, value) in list.iter().enumerate() {
-        let place = format!("{name}[{k}]");
-        let fields = object(value, &place)?;
-        let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
-        if let Some(last) = last.filter(|&last| last >= on) {
-            let expected = format!("more than {last}, that of {name}[{}]", k - 1);
-            return Err(wrong(&format!("{place}.frame"), &on.to_string(), &expected));
-        }
-        last = Some(on);
-        let place = format!("{place} (frame {on}).regions");
-        out.push(read(on, array(fields.get("regions"), &place)?, &place)?);
-    }
-    Ok(out)
 }
 
 fn click(value: &Value, place: &str) -> Result<FillClick, FieldError> {

@@ -14,7 +14,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, colour, count, flag, frame, given, number, object, point, share, wrong};
+use super::fields::{FieldError, array, by_frame, colour, count, flag, given, number, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
@@ -57,17 +57,7 @@ impl Document {
     ///
     /// The first invalid field.
     pub fn traced(&self) -> Result<Vec<TracedDrawing>, FieldError> {
-        let list = self.other_list("traced")?;
-        let mut drawings: Vec<TracedDrawing> = Vec::new();
-        for (k, value) in list.iter().enumerate() {
-            let drawing = drawing(value, k)?;
-            if let Some(last) = drawings.last().filter(|last| last.frame >= drawing.frame) {
-                let expected = format!("more than {}, that of traced[{}]", last.frame, k - 1);
-                return Err(wrong(&format!("traced[{k}].frame"), &drawing.frame.to_string(), &expected));
-            }
-            drawings.push(drawing);
-        }
-        Ok(drawings)
+        by_frame(&self.other_list("traced")?, ["traced", "strokes"], drawing)
     }
 
     /// Puts traced strokes into the document, in place of earlier ones.
@@ -80,22 +70,17 @@ impl Document {
     }
 }
 
-fn drawing(value: &Value, k: usize) -> Result<TracedDrawing, FieldError> {
-    let place = format!("traced[{k}]");
-    let fields = object(value, &place)?;
-    let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
-    let place = format!("{place} (frame {on})");
-    let list = array(fields.get("strokes"), &format!("{place}.strokes"))?;
+fn drawing(frame: FrameNumber, list: &[Value], place: &str) -> Result<TracedDrawing, FieldError> {
     let mut tracks = BTreeSet::new();
     let read = |(i, value): (usize, &Value)| {
-        let place = format!("{place}.strokes[{i}]");
+        let place = format!("{place}[{i}]");
         let stroke = stroke(value, &place)?;
         match tracks.insert(stroke.track) {
             true => Ok(stroke),
             false => Err(wrong(&format!("{place}.track"), &stroke.track.to_string(), "a number once on a frame")),
         }
     };
-    Ok(TracedDrawing { frame: on, strokes: list.iter().enumerate().map(read).collect::<Result<_, _>>()? })
+    Ok(TracedDrawing { frame, strokes: list.iter().enumerate().map(read).collect::<Result<_, _>>()? })
 }
 
 fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {

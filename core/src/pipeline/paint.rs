@@ -1,6 +1,6 @@
 //! What was painted and traced on each frame of a document, as pictures.
 
-use super::picture::{Picture, RenderJob};
+use super::picture::RenderJob;
 use super::strokes::{self, Seen};
 use super::{PipelineError, fill, frames_of};
 use crate::geometry::Point;
@@ -34,7 +34,7 @@ impl Shown {
     /// [`PipelineError::Field`] if the document has nothing of it, or it cannot be read; [`PipelineError::Option`] if the job
     /// names parts, which regions and strokes do not have.
     pub fn of(document: &Document, job: &RenderJob) -> Result<Self, PipelineError> {
-        let (regions, strokes) = (shows_regions(&job.picture), shows_strokes(&job.picture));
+        let (regions, strokes) = (job.picture.shows_regions(), job.picture.shows_strokes());
         let mut shown = Self { plain: strokes::plain(document), scale: job.scale, ..Self::default() };
         if let Some(name) = job.parts.as_ref().and_then(|names| names.first()).filter(|_| regions || strokes) {
             let reason = format!("found {name:?}, expected none: painted regions and strokes belong to no part");
@@ -111,8 +111,7 @@ impl Shown {
 ///
 /// [`PipelineError::Option`] for another size of pictures that show the footage.
 pub(super) fn sized(footage: &Footage, job: &RenderJob) -> Result<Footage, PipelineError> {
-    let whole = matches!(job.picture, Picture::Paint | Picture::Lines | Picture::Cel);
-    if job.scale != 1.0 && !whole {
+    if job.scale != 1.0 && !job.picture.has_any_size() {
         let reason = format!("found {}, expected 1: only paint, lines and cel are drawn in other sizes", job.scale);
         return Err(PipelineError::option("scale", reason));
     }
@@ -120,23 +119,15 @@ pub(super) fn sized(footage: &Footage, job: &RenderJob) -> Result<Footage, Pipel
     Ok(Footage { width: size(footage.width), height: size(footage.height), ..footage.clone() })
 }
 
-fn shows_regions(picture: &Picture) -> bool {
-    matches!(picture, Picture::Paint | Picture::Painted | Picture::Cel)
-}
-
-fn shows_strokes(picture: &Picture) -> bool {
-    matches!(picture, Picture::Lines | Picture::Cel)
-}
-
 /// The frames of a job's range on which the document has nothing of what the picture shows, as a message for the user. `None`
 /// if there are none, and for pictures of something else.
 pub fn undrawn(document: &Document, job: &RenderJob) -> Option<String> {
     let range = frames_of(&document.scene.footage, job.frames.clone()).ok()?;
-    let regions = shows_regions(&job.picture).then(|| {
+    let regions = job.picture.shows_regions().then(|| {
         let there = document.filled().ok()?.iter().map(|drawing| drawing.frame).collect();
         lacking(there, range.clone(), "painted", "fill")
     });
-    let strokes = shows_strokes(&job.picture).then(|| {
+    let strokes = job.picture.shows_strokes().then(|| {
         let there = strokes::strokes(document).ok()?.into_keys().collect();
         lacking(there, range, "drawn", "trace")
     });

@@ -29,6 +29,23 @@ pub enum Picture {
     Cel,
 }
 
+impl Picture {
+    /// Whether it shows painted regions.
+    pub fn shows_regions(&self) -> bool {
+        matches!(self, Self::Paint | Self::Painted | Self::Cel)
+    }
+
+    /// Whether it shows strokes.
+    pub fn shows_strokes(&self) -> bool {
+        matches!(self, Self::Lines | Self::Cel)
+    }
+
+    /// Whether it is drawn from outlines alone, and so can have any size.
+    pub fn has_any_size(&self) -> bool {
+        matches!(self, Self::Paint | Self::Lines | Self::Cel)
+    }
+}
+
 /// What to render and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {

@@ -151,7 +151,8 @@ pub const ALL: [Parameter; 15] = [
         id: "what",
         label: "What",
         help: "The picture to render: contours over the footage, the matte of the closed parts, \
-               the footage cut out by them, a colour for each part, painted regions, the drawing over them, traced strokes, or traced strokes over painted regions.",
+               the footage cut out by them, a colour for each part, painted regions, \
+               the drawing over them, strokes, or strokes over painted regions.",
         stage: Stage::Render,
         kind: Kind::Choice {
             default: "overlay",
@@ -162,8 +163,8 @@ pub const ALL: [Parameter; 15] = [
                 choice("ids", "A colour for each part; in OpenEXR also Cryptomatte layers"),
                 choice("paint", "Painted regions alone; in OpenEXR also Cryptomatte layers"),
                 choice("painted", "The drawing over its painted regions"),
-                choice("lines", "Traced strokes alone; in OpenEXR also Cryptomatte layers"),
-                choice("cel", "Traced strokes over painted regions; in OpenEXR also Cryptomatte layers"),
+                choice("lines", "Strokes alone: traced, of in-betweens, or drawn; in OpenEXR also Cryptomatte layers"),
+                choice("cel", "The same strokes over painted regions; in OpenEXR also Cryptomatte layers"),
             ],
         },
     },
@@ -171,7 +172,7 @@ pub const ALL: [Parameter; 15] = [
         id: "scale",
         label: "Scale",
         help: "Size of the picture as a multiple of the footage's, for what is drawn without the footage: \
-               painted regions and traced strokes.",
+               painted regions and strokes.",
         stage: Stage::Render,
         kind: Kind::Number { default: 1.0, min: 0.1, max: 16.0, unit: "" },
     },

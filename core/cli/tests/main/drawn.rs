@@ -21,7 +21,7 @@ fn project(fields: Value) -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-/// A red square behind a black line 4 px wide, in front of a grey square that is solid.
+/// A painted red square; a solid grey square to its left; a black line, 4 px wide, that crosses both and is written first.
 fn drawn() -> Value {
     let square = |x: f64, y: f64, side: f64| json!([[x, y], [x + side, y], [x + side, y + side], [x, y + side]]);
     let region = json!({"outline": square(10.0, 5.0, 20.0), "colour": [1, 0, 0], "track": 3, "confidence": 1.0});
@@ -74,7 +74,7 @@ fn pictures_have_the_size_that_is_asked_for() {
     let (_folder, path) = project(drawn());
     let cel = picture(&path, "cel", &["--scale", "2.5"]);
     assert_eq!(cel.dimensions(), (100, 75));
-    // The line is 10 px wide now, and as long as it was: 75 px and its round ends.
+    // The line is 10 px wide now.
     let column = (0..75).filter(|&y| cel.get_pixel(50, y).0 == [0, 0, 0, 255]).count();
     assert!((9..=10).contains(&column), "{column}");
     assert_eq!(cel.get_pixel(50, 20).0, [255, 0, 0, 255]);
@@ -104,7 +104,7 @@ fn frames_with_nothing_to_draw_are_told() {
     let output = render(&path, &path.with_file_name("c_%d.png"), &["--what", "cel"]);
     assert!(output.status.success());
     assert!(told(&output).contains("frame 1: not painted; run `rototoon fill` there"), "{}", told(&output));
-    assert!(!told(&output).contains("not traced"), "frame 1 is traced, without any stroke: {}", told(&output));
+    assert!(!told(&output).contains("not drawn"), "frame 1 is traced, without any stroke: {}", told(&output));
     let (_folder, empty) = project(json!({}));
     for (what, field, command) in [("lines", "traced", "trace"), ("cel", "filled", "fill"), ("paint", "filled", "fill")]
     {

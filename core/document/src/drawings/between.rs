@@ -1,7 +1,7 @@
 //! Drawings between keys: written by tweening, and read again where they are drawn or exported.
 
 use super::super::Document;
-use super::super::fields::{array, count, frame, given, object, share, wrong};
+use super::super::fields::{by_frame, count, given, object, share};
 use super::super::save::DECIMALS;
 use super::read::stroke;
 use super::{DrawingsError, DrawnStroke, lines, stroke_fields};
@@ -42,35 +42,20 @@ impl Document {
     ///
     /// The first invalid field.
     pub fn in_betweens(&self) -> Result<Vec<DrawnBetween>, DrawingsError> {
-        let list = self.other_list("in_betweens")?;
-        let mut drawn: Vec<DrawnBetween> = Vec::new();
-        for (k, value) in list.iter().enumerate() {
-            let between = between(value, k)?;
-            if let Some(last) = drawn.last().filter(|last| last.frame >= between.frame) {
-                let expected = format!("more than {}, that of in_betweens[{}]", last.frame, k - 1);
-                return Err(wrong(&format!("in_betweens[{k}].frame"), &between.frame.to_string(), &expected));
-            }
-            drawn.push(between);
-        }
-        Ok(drawn)
+        by_frame(&self.other_list("in_betweens")?, ["in_betweens", "strokes"], between)
     }
 }
 
-fn between(value: &Value, k: usize) -> Result<DrawnBetween, DrawingsError> {
-    let place = format!("in_betweens[{k}]");
-    let fields = object(value, &place)?;
-    let on = frame(fields.get("frame"), &format!("{place}.frame"))?;
-    let place = format!("{place} (frame {on})");
+fn between(frame: FrameNumber, list: &[Value], place: &str) -> Result<DrawnBetween, DrawingsError> {
     let read = |(i, value): (usize, &Value)| {
-        let place = format!("{place}.strokes[{i}]");
+        let place = format!("{place}[{i}]");
         let fields = object(value, &place)?;
         let track = count(fields.get("track"), &format!("{place}.track"))?;
         let opacity = given(fields, &place, "opacity", share)?.unwrap_or(1.0);
         // Pegs have moved it already.
         Ok((track, opacity, stroke(value, &place, &BTreeMap::new())?))
     };
-    let strokes = array(fields.get("strokes"), &format!("{place}.strokes"))?.iter().enumerate().map(read);
-    Ok(DrawnBetween { frame: on, strokes: strokes.collect::<Result<_, _>>()? })
+    Ok(DrawnBetween { frame, strokes: list.iter().enumerate().map(read).collect::<Result<_, _>>()? })
 }
 
 #[cfg(test)]
