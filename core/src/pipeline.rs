@@ -36,7 +36,7 @@ pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
-pub use trace::{TraceMemory, trace};
+pub use trace::{TraceMemory, trace, trace_drawings};
 pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
 pub use untracked::untracked;

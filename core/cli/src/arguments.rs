@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
 use std::path::{Path, PathBuf};
 
@@ -100,6 +101,18 @@ pub fn frames() -> Arg {
         .help("First and last frame, or one frame [default: all frames of the footage]")
         .allow_hyphen_values(true)
         .value_parser(crate::render::range)
+}
+
+/// `--drawings FRAMES`: the frames of drawings on keys.
+pub fn drawings(help: &'static str) -> Arg {
+    Arg::new("drawings")
+        .long("drawings")
+        .value_name("FRAMES")
+        .help(help)
+        .allow_hyphen_values(true)
+        .value_delimiter(',')
+        .conflicts_with("frames")
+        .value_parser(value_parser!(FrameNumber))
 }
 
 /// `--sensitivity NUMBER` of what finds ink.

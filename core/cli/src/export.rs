@@ -30,7 +30,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             to.display()
         )));
     }
-    let document = project::load(from)?;
+    // The other formats know parts only.
+    let takes_drawn = ["svg", "json"].contains(&extension.as_str());
+    let document = if takes_drawn { project::load_either(from)? } else { project::load(from)? };
     let inputs = project::inputs(&document, from);
     if extension == "json" {
         inputs.check(to)?;

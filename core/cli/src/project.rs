@@ -7,19 +7,24 @@ use std::path::Path;
 
 /// Reads a document and prints its warnings.
 pub fn load(path: &Path) -> Result<Document, Failure> {
-    warned(path, false)
+    warned(path, |_| true)
 }
 
 /// As [`load`], for work on drawings, which needs no part.
 pub fn load_drawn(path: &Path) -> Result<Document, Failure> {
-    warned(path, true)
+    warned(path, |_| false)
 }
 
-fn warned(path: &Path, drawn: bool) -> Result<Document, Failure> {
+/// As [`load`], for work that takes parts and drawings alike: one of both is enough.
+pub fn load_either(path: &Path) -> Result<Document, Failure> {
+    warned(path, |document| !document.has_drawn())
+}
+
+fn warned(path: &Path, needs_part: impl FnOnce(&Document) -> bool) -> Result<Document, Failure> {
     let document = Document::load(path)?;
     let problems = document.problems();
-    let told =
-        problems.warnings().filter(|warning| !(drawn && document.scene.parts.is_empty() && warning.place == "parts"));
+    let unneeded = document.scene.parts.is_empty() && !needs_part(&document);
+    let told = problems.warnings().filter(|warning| !(unneeded && warning.place == "parts"));
     for warning in told.chain(document.misspelt().warnings()) {
         line("warning", &format!("{}: {warning}", path.display()));
     }

@@ -6,10 +6,13 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline;
+use rototoon::project::Document;
 use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::Stage;
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -21,11 +24,15 @@ pub fn command() -> Command {
     Command::new("trace")
         .about(
             "Traces the lines of the first drawing as strokes and carries them to every frame. Strokes in the document's \
-             drawings are followed instead",
+             drawings are followed instead. With --drawings, traces drawings on keys for `rototoon tween`",
         )
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with traced strokes"))
         .arg(arguments::frames())
+        .arg(arguments::drawings(
+            "Traces each of these frames for itself, such as 0,8,16, and adds it to the document's drawings. Pictures are needed \
+             on these frames only",
+        ))
         .arg(
             Arg::new("line_style")
                 .long("style")
@@ -50,14 +57,38 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         _ => Style::Auto,
     };
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
+    let options = Options { style, sensitivity };
+    if let Some(keys) = given.get_many::<FrameNumber>("drawings") {
+        return on_keys(document, (from, to), &keys.copied().collect(), &options, arguments::threads(given));
+    }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::trace(&mut document, project::folder(from), frames, &Options { style, sensitivity }, None, bar)
+        pipeline::trace(&mut document, project::folder(from), frames, &options, None, bar)
             .map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
     project::save(document, from, to)?;
     pipeline::traced_lines(&traced).iter().for_each(|text| line("note", text));
+    Ok(())
+}
+
+/// Traces drawings on keys.
+fn on_keys(
+    mut document: Document,
+    (from, to): (&Path, &Path),
+    keys: &BTreeSet<FrameNumber>,
+    options: &Options,
+    threads: usize,
+) -> Result<(), Failure> {
+    let (document, empty) = progress::run(threads, |bar| {
+        let empty = pipeline::trace_drawings(&mut document, project::folder(from), keys, options, bar)
+            .map_err(|error| Failure::of(error, from))?;
+        Ok((document, empty))
+    })?;
+    project::save(document, from, to)?;
+    for frame in empty {
+        line("note", &format!("frame {frame}: no line was found, so its drawing is empty"));
+    }
     Ok(())
 }

@@ -58,6 +58,7 @@ pub mod fills;
 pub mod inputs;
 pub mod library;
 pub mod limbs;
+mod line;
 pub mod load;
 mod looks;
 pub mod output;

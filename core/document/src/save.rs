@@ -178,7 +178,7 @@ fn track(out: &mut String, part: &Part, frame: FrameNumber, points: &[Point]) {
     });
 }
 
-fn rounded(value: f64) -> f64 {
+pub(super) fn rounded(value: f64) -> f64 {
     let scale = 10f64.powi(DECIMALS);
     (value * scale).round() / scale
 }

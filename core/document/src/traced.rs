@@ -14,8 +14,9 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, by_frame, colour, count, flag, given, number, object, point, share, wrong};
-use super::save::DECIMALS;
+use super::fields::{FieldError, by_frame, count, given, number, object, share, wrong};
+use super::line::{self, Line};
+use super::save::rounded;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
 use serde_json::{Map, Value, json};
@@ -85,52 +86,24 @@ fn drawing(frame: FrameNumber, list: &[Value], place: &str) -> Result<TracedDraw
 
 fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
     let fields = object(value, place)?;
-    let each = |name: &str| Ok((format!("{place}.{name}"), array(fields.get(name), &format!("{place}.{name}"))?));
-    let (at, list) = each("points")?;
-    let points: Vec<Point> =
-        list.iter().enumerate().map(|(i, v)| point(Some(v), &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
-    let mut widths = Vec::new();
-    if fields.contains_key("widths") {
-        let (at, list) = each("widths")?;
-        widths =
-            list.iter().enumerate().map(|(i, v)| number(Some(v), &format!("{at}[{i}]"))).collect::<Result<_, _>>()?;
-        if widths.len() != points.len() {
-            return Err(wrong(&at, &format!("a list of {}", widths.len()), &format!("a list of {}", points.len())));
-        }
-    }
-    let closed = flag(fields.get("closed"), &format!("{place}.closed"))?;
-    let fill = given(fields, place, "fill", flag)?.unwrap_or(false);
-    if fill && !closed {
-        return Err(wrong(&format!("{place}.fill"), "true on an open stroke", "a closed stroke"));
-    }
+    let Line { points, closed, fill, widths, colour } = line::read(fields, place, number)?;
     Ok(TracedStroke {
         track: count(fields.get("track"), &format!("{place}.track"))?,
         points,
         closed,
         fill,
         widths,
-        colour: given(fields, place, "colour", |value, place| colour(value, place, number))?,
+        colour,
         confidence: given(fields, place, "confidence", share)?,
     })
 }
 
 fn written(stroke: &TracedStroke) -> Value {
-    let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
+    let TracedStroke { track, points, closed, widths, colour, confidence, fill } = stroke.clone();
     let mut fields = Map::new();
-    fields.insert("track".into(), json!(stroke.track));
-    let points: Vec<Value> = stroke.points.iter().map(|p| json!([rounded(p.x), rounded(p.y)])).collect();
-    fields.insert("points".into(), Value::Array(points));
-    fields.insert("closed".into(), json!(stroke.closed));
-    if stroke.fill {
-        fields.insert("fill".into(), json!(true));
-    }
-    if !stroke.widths.is_empty() {
-        fields.insert("widths".into(), json!(stroke.widths.iter().map(|&w| rounded(w)).collect::<Vec<_>>()));
-    }
-    if let Some(colour) = stroke.colour {
-        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
-    }
-    if let Some(confidence) = stroke.confidence {
+    fields.insert("track".into(), json!(track));
+    line::write(&Line { points, closed, fill, widths, colour }, &mut fields, rounded);
+    if let Some(confidence) = confidence {
         fields.insert("confidence".into(), json!((confidence * 1e3).round() / 1e3));
     }
     Value::Object(fields)

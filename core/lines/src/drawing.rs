@@ -19,6 +19,8 @@ pub struct Drawing {
     pub(crate) width: f64,
     /// Size of a pixel of 540 lines.
     pub(crate) unit: f64,
+    /// How dark each pixel is, and the darkest ink; `None` if lines are sketched, since their widths are not measured.
+    pub(crate) darkness: Option<(Raster<f32>, f32)>,
     rough: bool,
     outside: Outside,
 }
@@ -52,13 +54,14 @@ impl Drawing {
         };
         graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
         graph.add_solids(solids.map(|solids| solids.outlines).unwrap_or_default());
-        Self { picture, graph, width, unit, rough, outside }
+        let darkness = (!rough).then_some((ink.darkness, ink.darkest));
+        Self { picture, graph, width, unit, darkness, rough, outside }
     }
 
     /// The strokes of the drawing.
     pub fn strokes(&self) -> Vec<Stroke> {
         let kept = self.lines();
-        kept.par_iter().map(|line| finish::finished(line, &self.picture, self.unit)).collect()
+        kept.par_iter().map(|line| finish::finished(line, self)).collect()
     }
 
     /// The strokes before they are fitted.

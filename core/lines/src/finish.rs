@@ -1,7 +1,9 @@
 //! Strokes as they are handed out: fitted, with few even points, widths and colour.
 
+use crate::drawing::Drawing;
 use crate::stroke::Stroke;
 use crate::strokes::Walked;
+use crate::width;
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_fit::{Options, fit};
@@ -12,14 +14,22 @@ const LEAST_TOLERANCE: f64 = 0.45;
 /// Distance between points in pixels, at 540 lines.
 const SPACING: f64 = 2.0;
 
-/// The stroke of a walked line. `unit` is the size of a pixel of 540 lines.
-pub fn finished(walked: &Walked, picture: &Raster<Colour>, unit: f64) -> Stroke {
-    let points = curve(&walked.points, walked.closed, unit);
+/// The stroke of a walked line on a drawing.
+pub fn finished(walked: &Walked, drawing: &Drawing) -> Stroke {
+    let picture = &*drawing.picture;
+    let points = curve(&walked.points, walked.closed, drawing.unit);
     if walked.fill {
         let colour = colour(&inside(&points, picture), picture);
         return Stroke { widths: Vec::new(), colour, points, closed: true, fill: true };
     }
-    let widths = widths(walked, &points);
+    let widths = match &drawing.darkness {
+        Some((darkness, darkest)) => {
+            let line = (&walked.points[..], walked.closed);
+            let radii = width::measured(line, &walked.radii, darkness, f64::from(*darkest));
+            widths(walked, &radii, &points)
+        }
+        None => widths(walked, &walked.radii, &points),
+    };
     Stroke { widths, colour: colour(&walked.points, picture), points, closed: walked.closed, fill: false }
 }
 
@@ -51,7 +61,7 @@ fn curve(points: &[Point], closed: bool, unit: f64) -> Vec<Point> {
 }
 
 /// The width at each point of the fitted line: that of the walked line at the same share of the length.
-fn widths(walked: &Walked, points: &[Point]) -> Vec<f64> {
+fn widths(walked: &Walked, radii: &[f64], points: &[Point]) -> Vec<f64> {
     let shares = |points: &[Point]| {
         let total = polyline::length(points, false).max(1e-9);
         let mut at = 0.0;
@@ -62,7 +72,7 @@ fn widths(walked: &Walked, points: &[Point]) -> Vec<f64> {
         }
         out
     };
-    let radii: Vec<Point> = walked.radii.iter().map(|&r| Point::new(2.0 * r, 0.0)).collect();
+    let radii: Vec<Point> = radii.iter().map(|&r| Point::new(2.0 * r, 0.0)).collect();
     let smooth = crate::centre::smoothed(&radii, walked.closed, 3.0);
     let known = shares(&walked.points);
     let mut k = 0;

@@ -21,6 +21,7 @@
 //! - `strokes`: paired branches as strokes
 //! - `sketch`, `economy`: rough drawings, and strokes that nobody would draw
 //! - `drawing`, `stroke`: all of this for one picture
+//! - `width`: how wide a line is at each point
 //! - `finish`: fitted curves, widths, colours
 //! - `carry`: the next drawing
 //! - [`displaced`]: where the lines of one drawing are on another one
@@ -84,6 +85,7 @@ mod solid;
 mod stroke;
 mod strokes;
 mod thin;
+mod width;
 
 pub use carry::{Displaced, Key, between, bind, carry, carry_known, displaced, identify};
 pub use drawing::Drawing;

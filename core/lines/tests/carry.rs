@@ -126,3 +126,29 @@ fn drawn_strokes_get_the_numbers_of_what_they_lie_on() {
     let expected: Vec<usize> = (100..112).rev().chain([300]).collect();
     assert_eq!((found, next), (expected, 301));
 }
+
+#[test]
+fn a_carried_line_is_thick_and_thin_where_its_own_drawing_is() {
+    // On the first drawing it gets thicker to the right, on the second one to the left.
+    let wedge = |down: f64, back: bool| -> Vec<Line> {
+        let piece = |k: u32| {
+            let x = 40.0 + 10.0 * f64::from(k);
+            let width = 2.0 + 0.25 * f64::from(if back { 23 - k } else { k });
+            Line { width, ..line(&[(x, 100.0 + down), (x + 10.0, 100.0 + down)]) }
+        };
+        (0..24).map(piece).collect()
+    };
+    let (from, to) = (drawing(&wedge(0.0, false)), drawing(&wedge(6.0, true)));
+    let strokes = from.strokes();
+    assert_eq!(strokes.len(), 1);
+    let mut next = 1;
+    let carried = carry(&from, &[Tracked::sure(0, strokes[0].clone())], &to, &mut next);
+    assert_eq!(next, 1);
+    for (stroke, back) in [(&strokes[0], false), (&carried[0].stroke, true)] {
+        for (point, found) in stroke.points.iter().zip(&stroke.widths) {
+            let place = (point.x - 40.0) / 10.0 - 0.5;
+            let width = 2.0 + 0.25 * if back { 23.0 - place } else { place };
+            assert!((found - width).abs() < 0.6, "{found} for {width} at {point}");
+        }
+    }
+}

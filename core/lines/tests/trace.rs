@@ -36,13 +36,13 @@ fn wave() -> Line {
 
 #[test]
 fn one_line_is_one_stroke_with_its_width() {
-    for width in [1.5, 3.0, 8.0] {
+    for width in [1.5, 2.0, 3.0, 8.0] {
         let lines = [Line { width, ..wave() }];
         let strokes = traced(&lines);
         assert_same(&strokes, &lines, 1.0);
         let widths = &strokes[0].widths;
         let mean = widths.iter().sum::<f64>() / widths.len() as f64;
-        assert!((mean - width).abs() < 0.3 * width + 0.5, "{width}: {mean}");
+        assert!((mean - width).abs() < 0.25, "{width}: {mean}");
     }
 }
 

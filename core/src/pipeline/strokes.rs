@@ -21,7 +21,8 @@ const PLAIN: f64 = 2.0;
 pub(super) enum Id {
     /// Its number, which is the same on all frames.
     Track(usize),
-    /// The frame of its drawing and its index there. Nothing says which stroke it is on other frames.
+    /// The frame of its drawing and its index there: the drawings were not tweened, or changed since, so nothing says which
+    /// stroke it is on other frames.
     Drawn(FrameNumber, usize),
 }
 
@@ -56,17 +57,20 @@ impl Seen {
 /// [`PipelineError::Field`].
 pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<Seen>>, PipelineError> {
     let drawings = document.drawings().map_err(|error| fill::field(&error))?.drawings;
+    let numbers = document.stroke_numbers().map_err(|error| fill::field(&error))?;
     let between = document.in_betweens().map_err(|error| fill::field(&error))?;
     let traced = document.traced().map_err(|error| fill::field(&error))?;
-    let drawn = |id: Id, opacity: f64, DrawnStroke { points, closed, fill, colour, .. }: DrawnStroke| Seen {
+    let drawn = |id: Id, opacity: f64, DrawnStroke { points, closed, fill, widths, colour, .. }: DrawnStroke| Seen {
         id,
         opacity,
-        stroke: TracedStroke { points, closed, fill, colour, ..TracedStroke::default() },
+        stroke: TracedStroke { points, closed, fill, widths, colour, ..TracedStroke::default() },
     };
     let mut found: BTreeMap<FrameNumber, Vec<Seen>> = BTreeMap::new();
     for own in drawings {
+        let tracks = numbers.get(&own.frame);
+        let id = |k: usize| tracks.map_or(Id::Drawn(own.frame, k), |tracks| Id::Track(tracks[k]));
         let strokes = own.strokes.into_iter().enumerate();
-        found.insert(own.frame, strokes.map(|(k, stroke)| drawn(Id::Drawn(own.frame, k), 1.0, stroke)).collect());
+        found.insert(own.frame, strokes.map(|(k, stroke)| drawn(id(k), 1.0, stroke)).collect());
     }
     for own in between {
         let strokes = own.strokes.into_iter();

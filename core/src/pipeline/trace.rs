@@ -1,10 +1,12 @@
 //! Strokes of line drawings: traced on one frame, and the same strokes on the others.
 
 mod kept;
+mod on_keys;
 #[cfg(test)]
 mod tests;
 
 pub use kept::TraceMemory;
+pub use on_keys::trace_drawings;
 
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of};
@@ -15,7 +17,9 @@ use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use blake3::Hash;
 use kept::{Numbers, Span, of_picture};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -44,7 +48,6 @@ pub fn trace(
     memory: Option<&mut TraceMemory>,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
-    let wrong = |error: &dyn std::fmt::Display| PipelineError::Field(error.to_string());
     let footage = &document.scene.footage;
     let range = frames_of(footage, range)?;
     super::memory::to_trace(footage)?;
@@ -278,7 +281,13 @@ fn of_drawing(drawing: &Drawn) -> Vec<Stroke> {
 
 fn of_drawn(drawn: &DrawnStroke) -> Stroke {
     let colour = drawn.colour.unwrap_or_default();
-    Stroke { points: drawn.points.clone(), closed: drawn.closed, fill: drawn.fill, colour, ..Stroke::default() }
+    Stroke {
+        points: drawn.points.clone(),
+        closed: drawn.closed,
+        widths: drawn.widths.clone(),
+        fill: drawn.fill,
+        colour,
+    }
 }
 
 fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
@@ -291,7 +300,16 @@ fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
         confidence: (*confidence < 1.0).then_some(*confidence),
         fill: stroke.fill,
     };
-    let mut strokes: Vec<TracedStroke> = strokes.iter().map(stroke).collect();
-    strokes.sort_by(|a, b| behind((a.fill, area(&a.points)), (b.fill, area(&b.points))));
-    TracedDrawing { frame, strokes }
+    let mut strokes: Vec<Tracked> = strokes.to_vec();
+    strokes.sort_by(|a, b| behind_first(&a.stroke, &b.stroke));
+    TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
+}
+
+/// The order of strokes on a drawing: what is farther back comes first.
+fn behind_first(a: &Stroke, b: &Stroke) -> Ordering {
+    behind((a.fill, area(&a.points)), (b.fill, area(&b.points)))
+}
+
+fn wrong(error: &dyn Display) -> PipelineError {
+    PipelineError::Field(error.to_string())
 }

@@ -87,7 +87,10 @@ pub fn tween(
     let drawn = drawn.collect::<Result<Vec<_>, Cancelled>>()?;
     progress.report("drawing in-betweens", 1.0)?;
     let spans = || on_keys.windows(2).enumerate().map(|(k, pair)| ([pair[0], pair[1]], sequence.is_held(k)));
-    let matches = spans().zip(&matchings).map(|((span, held), m)| written(span, held, m)).collect();
+    let numbers: Vec<Vec<usize>> =
+        on_keys.iter().map(|&frame| sequence.at(frame).iter().map(|drawn| drawn.track).collect()).collect();
+    let found = spans().zip(&matchings).zip(numbers.windows(2));
+    let matches = found.map(|((span, matching), tracks)| written(span, matching, tracks)).collect();
     document.set_in_betweens(matches, &drawn);
     // Where no frame lies between, nothing is held.
     let held = spans().filter(|([first, last], held)| *held && first + 1 < *last).map(|(span, _)| span).collect();
@@ -141,6 +144,7 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         closed: s.closed,
         colour: s.colour,
         fill: s.fill,
+        widths: s.widths.clone(),
         material: s.material,
         layer: s.layer,
     };
@@ -215,11 +219,13 @@ pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
-    let Stroke { points, closed, colour, fill, material, layer } = drawn.stroke;
-    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill, colour, material, layer, peg: None })
+    let Stroke { points, closed, colour, fill, widths, material, layer } = drawn.stroke;
+    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill, widths, colour, material, layer, peg: None })
 }
 
-fn written([frame, next]: [FrameNumber; 2], held: bool, matching: &Matching) -> Value {
+/// What the document says of a span: its frames, whether it is held, how strokes match, and the numbers of both drawings'
+/// strokes.
+fn written(([frame, next], held): ([FrameNumber; 2], bool), matching: &Matching, tracks: &[Vec<usize>]) -> Value {
     let short = |v: f64| (v * 1e4).round() / 1e4;
     let pairs: Vec<Value> = matching
         .pairs
@@ -241,7 +247,8 @@ fn written([frame, next]: [FrameNumber; 2], held: bool, matching: &Matching) -> 
         })
         .collect();
     let mut written = json!({"frame": frame, "next": next, "pairs": pairs, "split": pieces(&matching.split),
-        "joined": pieces(&matching.joined), "vanished": matching.vanished, "appeared": matching.appeared});
+        "joined": pieces(&matching.joined), "vanished": matching.vanished, "appeared": matching.appeared,
+        "tracks": tracks});
     // Most drawings have no such lines.
     if !chained.is_empty() {
         written["chained"] = Value::from(chained);

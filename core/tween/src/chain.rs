@@ -15,7 +15,7 @@ pub struct Chain {
 
 /// A chain as one line, with the places where its pieces are on it.
 pub(super) struct Joined {
-    /// The line. Gaps between pieces are straight. It has the attributes of the first piece.
+    /// The line. Gaps between pieces are straight. It has the attributes of the first piece, but no widths.
     pub line: Stroke,
     /// The share of the line's length at each point; one entry more where it is closed.
     pub shares: Vec<f64>,
@@ -50,7 +50,8 @@ impl Chain {
             }
             ranges.push((start, points.len().max(start + 1) - 1));
         }
-        let attributes = self.pieces.first().map(|piece| Stroke { points: Vec::new(), ..strokes[piece.0].clone() });
+        let bare = |stroke: &Stroke| Stroke { points: Vec::new(), widths: Vec::new(), ..stroke.clone() };
+        let attributes = self.pieces.first().map(|piece| bare(&strokes[piece.0]));
         let line = Stroke { points, closed: self.closed, ..attributes.unwrap_or_default() };
         let ring = self.closed && self.pieces.len() == 1 && strokes[self.pieces[0].0].closed;
         Joined { shares: vertex_shares(&line), line, ranges, ring }

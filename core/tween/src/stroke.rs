@@ -9,6 +9,8 @@ pub struct Stroke {
     pub points: Vec<Point>,
     /// Whether the last point joins the first.
     pub closed: bool,
+    /// Width of the line in pixels at each point; empty if it has none of its own. Matching does not look at it.
+    pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1. Matching compares colours where both strokes have one.
     pub colour: Option<[f32; 3]>,
     /// Number of the material. Matching compares materials where both strokes have one.

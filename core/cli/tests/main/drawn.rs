@@ -160,10 +160,18 @@ fn in_betweens_and_drawings_are_drawn_and_exported() {
         assert_eq!(picture.get_pixel(4 * x, 60).0[..3], [0, 0, 255]);
     }
 
-    let to = folder.path().join("lines.svg");
-    run(&["export", tweened.to_str().unwrap(), "-o", to.to_str().unwrap()]);
+    let to = &folder.path().join("lines.svg");
+    assert_eq!(run(&["export", tweened.to_str().unwrap(), "-o", to.to_str().unwrap()]), "", "it needs no part");
     let text = fs::read_to_string(to).unwrap();
-    for id in ["stroke-0", "frame-0-stroke-0", "frame-4-stroke-0"] {
-        assert!(text.contains(&format!("id=\"{id}\"")), "{id}: {text}");
+    // It is one stroke, from the first drawing to the last.
+    assert_eq!(text.matches("<path").count(), 1, "{text}");
+    assert!(
+        text.contains(r#"id="stroke-0""#) && text.contains("M8 5L8 25;") && text.contains(";M32 5L32 25"),
+        "{text}"
+    );
+    run(&["export", path.to_str().unwrap(), "-o", to.to_str().unwrap()]);
+    let text = fs::read_to_string(to).unwrap();
+    for id in ["frame-0-stroke-0", "frame-4-stroke-0"] {
+        assert!(text.contains(&format!("id=\"{id}\"")), "nothing says that these are one stroke: {id}: {text}");
     }
 }

@@ -190,3 +190,76 @@ fn a_pupil_is_a_fill_in_the_document_and_in_svg() {
     assert_eq!(filled.len(), 1);
     assert!(filled[0].contains("id=\"stroke-0\"") && filled[0].contains("stroke=\"none\""), "{}", filled[0]);
 }
+
+#[test]
+fn keys_are_traced_and_their_in_betweens_have_widths_and_numbers() {
+    let (folder, path) = project(json!({}));
+    // Nothing is drawn between the keys.
+    (1..3).for_each(|frame| fs::remove_file(folder.path().join(format!("f_{frame:03}.png"))).unwrap());
+    let (keys, out) = (folder.path().join("keys.json"), folder.path().join("tweened.json"));
+    let output = trace(&path, &keys, &["--drawings", "3,0"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let document = read(&keys);
+    assert_eq!((&document["note"], document["traced"].is_null()), (&json!("kept"), true));
+    let drawings = document["drawings"].as_array().unwrap();
+    assert_eq!(drawings.iter().map(|own| own["frame"].as_i64().unwrap()).collect::<Vec<_>>(), [0, 3]);
+    let run = |words: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(words).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    run(&["tween", keys.to_str().unwrap(), "-o", out.to_str().unwrap()]);
+    let tweened = read(&out);
+    let numbers: Vec<u64> = serde_json::from_value(tweened["matches"][0]["tracks"][0].clone()).unwrap();
+    let mut sorted = numbers.clone();
+    sorted.sort_unstable();
+    assert_eq!((sorted, &tweened["matches"][0]["tracks"].as_array().unwrap().len()), (vec![0, 1, 2], &2));
+    for (k, moved) in [(0, 4.0), (1, 8.0)] {
+        let strokes = tweened["in_betweens"][k]["strokes"].as_array().unwrap();
+        assert_eq!(strokes.len(), 3);
+        for stroke in strokes {
+            let widths: Vec<f64> = serde_json::from_value(stroke["widths"].clone()).unwrap();
+            assert_eq!(widths.len(), stroke["points"].as_array().unwrap().len());
+            let width = if stroke["closed"] == true { 3.0 } else { 2.0 };
+            assert!(widths.iter().all(|found| (found - width).abs() < 0.4), "{width} px: {widths:?}");
+        }
+        let ring = strokes.iter().find(|stroke| stroke["closed"] == true).expect("the ring");
+        let points: Vec<[f64; 2]> = serde_json::from_value(ring["points"].clone()).unwrap();
+        let mean = points.iter().map(|p| p[0]).sum::<f64>() / points.len() as f64;
+        assert!((mean - 110.0 - moved).abs() < 0.5, "{mean} on frame {}", k + 1);
+    }
+    // Pictures name a stroke alike on keys and between them.
+    let names = |frame: &str| {
+        let to = folder.path().join(format!("lines_{frame}.exr"));
+        run(&["render", out.to_str().unwrap(), "-o", to.to_str().unwrap(), "--what", "lines", "--frames", frame]);
+        let header = String::from_utf8_lossy(&fs::read(to).unwrap()).into_owned();
+        (0..3).all(|k| header.contains(&format!("\"stroke {k}\":"))) && !header.contains("\"frame ")
+    };
+    assert!(names("0") && names("1") && names("3"));
+}
+
+#[test]
+fn drawings_that_are_there_are_not_traced_over() {
+    let stroke = json!({"points": [[20, 60], [90, 60]], "closed": false});
+    let own = |frame: i64| json!({"frame": frame, "strokes": [stroke]});
+    let fields = json!({"drawings": [own(0), own(2)], "pairs": [{"frame": 0, "from": 0, "to": 0}]});
+    let (folder, path) = project(fields);
+    let out = folder.path().join("keys.json");
+    for (frames, code, said) in [
+        ("2", 1, "drawings[1] (frame 2): found a drawing, expected none"),
+        ("1", 1, "pairs[0] (frame 0): found a pair of frames 0 and 2, expected none"),
+        ("3,9", 2, "--drawings: found 9, expected frames of the footage, 0 to 3"),
+        ("3,x", 2, "invalid value 'x'"),
+    ] {
+        let output = trace(&path, &out, &["--drawings", frames]);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{told}");
+        assert!(told.contains(said) && !out.exists(), "{told}");
+    }
+    let blank = ImageBuffer::from_pixel(160, 120, Rgb([250u8; 3]));
+    blank.save(folder.path().join("f_003.png")).unwrap();
+    let output = trace(&path, &out, &["--drawings", "3"]);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success() && told.contains("frame 3: no line was found, so its drawing is empty"), "{told}");
+    let drawings = read(&out)["drawings"].clone();
+    assert_eq!((&drawings[0], &drawings[2]["strokes"]), (&own(0), &json!([])));
+}

@@ -1,8 +1,8 @@
 //! Drawings between keys: written by tweening, and read again where they are drawn or exported.
 
 use super::super::Document;
-use super::super::fields::{by_frame, count, given, object, share};
-use super::super::save::DECIMALS;
+use super::super::fields::{array, by_frame, count, frame, given, object, share};
+use super::super::save::rounded;
 use super::read::stroke;
 use super::{DrawingsError, DrawnStroke, lines, stroke_fields};
 use rototoon_base::scene::FrameNumber;
@@ -21,7 +21,6 @@ pub struct DrawnBetween {
 impl Document {
     /// Puts the results of tweening into the document: matches, as JSON objects, and the drawings between keys.
     pub fn set_in_betweens(&mut self, matches: Vec<Value>, drawn: &[DrawnBetween]) {
-        let rounded = |v: f64| (v * 10f64.powi(DECIMALS)).round() / 10f64.powi(DECIMALS);
         let written = drawn.iter().map(|between| {
             let stroke = |(track, opacity, stroke): &(usize, f64, DrawnStroke)| {
                 let mut fields = Map::new();
@@ -43,6 +42,32 @@ impl Document {
     /// The first invalid field.
     pub fn in_betweens(&self) -> Result<Vec<DrawnBetween>, DrawingsError> {
         by_frame(&self.other_list("in_betweens")?, ["in_betweens", "strokes"], between)
+    }
+
+    /// By frame of a drawing on a key the numbers of its strokes, which in-betweens call `track`. A drawing is not in it if the
+    /// document has no matches of it, or it has another number of strokes than when they were made.
+    ///
+    /// # Errors
+    ///
+    /// The first invalid field.
+    pub fn stroke_numbers(&self) -> Result<BTreeMap<FrameNumber, Vec<usize>>, DrawingsError> {
+        let mut found = BTreeMap::new();
+        for (k, value) in self.other_list("matches")?.iter().enumerate() {
+            let place = format!("matches[{k}]");
+            let fields = object(value, &place)?;
+            let Some(tracks) = fields.get("tracks") else { continue };
+            for (side, name) in ["frame", "next"].into_iter().enumerate() {
+                let on = frame(fields.get(name), &format!("{place}.{name}"))?;
+                let at = format!("{place}.tracks");
+                let own = array(array(Some(tracks), &at)?.get(side), &format!("{at}[{side}]"))?.iter().enumerate();
+                let numbers = own.map(|(i, number)| count(Some(number), &format!("{at}[{side}][{i}]")));
+                found.insert(on, numbers.collect::<Result<Vec<usize>, _>>()?);
+            }
+        }
+        let counts: BTreeMap<FrameNumber, usize> =
+            self.drawings()?.drawings.iter().map(|own| (own.frame, own.strokes.len())).collect();
+        found.retain(|on, numbers| counts.get(on) == Some(&numbers.len()));
+        Ok(found)
     }
 }
 
@@ -73,9 +98,10 @@ mod tests {
 
     #[test]
     fn what_is_written_is_read_again() {
-        let stroke = |x: f64, colour| DrawnStroke {
+        let stroke = |x: f64, colour: Option<[f32; 3]>| DrawnStroke {
             points: vec![Point::new(x, 2.0), Point::new(7.5, 3.0)],
             closed: true,
+            widths: if colour.is_some() { vec![1.5, 2.0] } else { Vec::new() },
             colour,
             ..DrawnStroke::default()
         };
@@ -91,6 +117,26 @@ mod tests {
         document.set_in_betweens(Vec::new(), &drawn);
         let again = Document::parse(&document.to_json(), "a.json").unwrap();
         assert_eq!(again.in_betweens().unwrap(), drawn);
+    }
+
+    #[test]
+    fn the_strokes_of_keys_have_numbers() {
+        let stroke = r#"{"points": [[1, 2]], "closed": false}"#;
+        let keys = format!(
+            r#"[], "drawings": [{{"frame": 0, "strokes": [{stroke}, {stroke}]}}, {{"frame": 4, "strokes": [{stroke}]}},
+            {{"frame": 7, "strokes": [{stroke}]}}]"#
+        );
+        let with = |tracks: &str| {
+            let text = format!(
+                r#"{keys}, "matches": [{{"frame": 0, "next": 4, "tracks": {tracks}}}, {{"frame": 4, "next": 7}}]"#
+            );
+            document(&text).stroke_numbers()
+        };
+        assert_eq!(with("[[0, 5], [5]]").unwrap(), BTreeMap::from([(0, vec![0, 5]), (4, vec![5])]));
+        // The artist has drawn a stroke more since.
+        assert_eq!(with("[[0], [5]]").unwrap(), BTreeMap::from([(4, vec![5])]));
+        assert_eq!(with("[[0]]").unwrap_err().to_string(), "matches[0].tracks[1]: found nothing, expected a list");
+        assert!(document("[]").stroke_numbers().unwrap().is_empty());
     }
 
     #[test]

@@ -4,15 +4,15 @@
 //!
 //! ```json
 //! "drawings": [{"frame": 0, "spacing": "smooth", "corner": false, "strokes": [
-//!   {"points": [[x, y], "…"], "closed": true, "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
+//!   {"points": [[x, y], "…"], "closed": true, "widths": [2.5, "…"], "colour": [r, g, b], "material": 0, "layer": 2, "peg": "arm"}, "…"]}, "…"],
 //! "pairs": [{"frame": 0, "from": 3, "to": 5}, {"frame": 0, "from": 4, "to": null}],
 //! "pegs": [{"name": "arm", "parent": "body", "pivot": [x, y], "keys": [
 //!   {"frame": 0, "shift": [x, y], "turn": 30, "scale": 1.2, "timing": "ease_in_out"}, "…"]}]
 //! ```
 //!
-//! - `drawings`: frames ascend; strokes are listed from back to front. `colour` (sRGB, 0 to 1), `material`, `layer` and
-//!   `peg` are optional. So is `fill`: the closed stroke is the outline of a shape filled with its colour, without a line
-//!   around it. Tracing reads it; in-betweens do not have it. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
+//! - `drawings`: frames ascend; strokes are listed from back to front. `widths` (pixels, one for each point), `colour` (sRGB, 0 to
+//!   1), `material`, `layer` and `peg` are optional. So is `fill`: the closed stroke is the outline of a shape filled with its
+//!   colour. Without `widths` it has no line around it. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
 //!   determines the movement to the next drawing: `"smooth"` (the default), a movement function, or a spacing chart,
 //!   which is a list with the share of the way for each frame between.
 //! - A movement function is `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
@@ -27,15 +27,17 @@
 //! ```json
 //! "matches": [{"frame": 0, "next": 8, "pairs": [{"from": 3, "to": 5, "reversed": false, "start": 0.25,
 //!   "confidence": 0.97, "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [],
-//!   "vanished": [4], "appeared": []}, "…"],
+//!   "vanished": [4], "appeared": [], "tracks": [[0, 1, "…"], [1, 0, "…"]]}, "…"],
 //! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1,
-//!   "colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
+//!   "widths": "…", "colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
 //! ```
 //!
 //! - `start`: for closed strokes, the position of the first point on the counterpart, as a share of the counterpart's
 //!   length.
 //! - `track`: the number of a stroke, the same on all frames.
+//! - `tracks`: the numbers of the strokes of both drawings, in the order of their strokes.
 
+mod adding;
 mod between;
 mod read;
 
@@ -44,6 +46,7 @@ pub use read::{read_pegs, read_timing};
 
 use super::Document;
 use super::fields::{array, wrong};
+use super::line::{self, Line};
 use super::schema::{Field, TOP};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::FrameNumber;
@@ -77,6 +80,8 @@ pub struct DrawnStroke {
     /// Whether it is the outline of a solid shape without a line around it, as in [`TracedStroke`](crate::traced::TracedStroke).
     /// Then it is closed.
     pub fill: bool,
+    /// Width of the line in pixels at each point; may be empty.
+    pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<[f32; 3]>,
     /// Number of the stroke's material.
@@ -167,6 +172,11 @@ impl Document {
         read::Reader::default().document(self)
     }
 
+    /// Whether the document has drawings, in-betweens, traced strokes or painted regions, or lists for them.
+    pub fn has_drawn(&self) -> bool {
+        ["drawings", "in_betweens", "traced", "filled"].iter().any(|name| self.other_field(name).is_some())
+    }
+
     /// Puts the list `json` into a field that is not part of the document's scene. It replaces an earlier value.
     pub(super) fn set_other_field(&mut self, name: &'static str, json: String) {
         if self.layout.top.is_empty() {
@@ -201,15 +211,6 @@ impl Document {
             None => Ok(Vec::new()),
         }
     }
-
-    /// Puts drawings into the document, in place of earlier ones. Spacing, corners and pegs are not written.
-    pub fn set_drawings(&mut self, drawings: &[Drawing]) {
-        let written = drawings.iter().map(|d| {
-            let strokes = d.strokes.iter().map(|s| Value::Object(stroke_fields(s, |v| v))).collect::<Vec<_>>();
-            json!({"frame": d.frame, "strokes": strokes})
-        });
-        self.set_other_field("drawings", lines(written));
-    }
 }
 
 /// Place of a drawing in messages: its JSON path and frame.
@@ -239,16 +240,9 @@ pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
 }
 
 fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<String, Value> {
+    let DrawnStroke { points, closed, fill, widths, colour, .. } = stroke.clone();
     let mut fields = Map::new();
-    let points: Vec<Value> = stroke.points.iter().map(|p| json!([written(p.x), written(p.y)])).collect();
-    fields.insert("points".into(), Value::Array(points));
-    fields.insert("closed".into(), json!(stroke.closed));
-    if stroke.fill {
-        fields.insert("fill".into(), json!(true));
-    }
-    if let Some(colour) = stroke.colour {
-        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
-    }
+    line::write(&Line { points, closed, fill, widths, colour }, &mut fields, written);
     for (name, number) in [("material", stroke.material), ("layer", stroke.layer)] {
         if let Some(number) = number {
             fields.insert(name.into(), json!(number));
@@ -342,9 +336,5 @@ mod tests {
         assert!(text.contains(r#""note": "kept""#) && text.contains(r#"{"frame":0}"#));
         let again = Document::parse(&text, "a.json").unwrap();
         assert_eq!(again.to_json(), text);
-        let mut fresh = Document::new(doc.scene.clone());
-        fresh.set_drawings(&[Drawing { frame: 1, strokes: vec![stroke.clone()], ..Drawing::default() }]);
-        let read = Document::parse(&fresh.to_json(), "b.json").unwrap().drawings().unwrap();
-        assert_eq!(read.drawings[0].strokes, [stroke]);
     }
 }

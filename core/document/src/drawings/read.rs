@@ -5,7 +5,8 @@
 //! problem.
 
 use super::super::Document;
-use super::super::fields::{array, count, described, flag, frame, given, number, object, point, wrong};
+use super::super::fields::{array, count, described, flag, frame, given, number, object, point, share, wrong};
+use super::super::line::{self, Line};
 use super::{
     Drawing, Drawings, DrawingsError, DrawnPair, DrawnPeg, DrawnPegKey, DrawnStroke, WrittenTiming, drawing_place,
     pair_place, peg_key_place, peg_place,
@@ -169,25 +170,14 @@ impl Reader {
 
 pub(super) fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<DrawnStroke, DrawingsError> {
     let fields = object(value, place)?;
-    let list = array(fields.get("points"), &format!("{place}.points"))?;
-    let points = list.iter().enumerate().map(|(i, p)| point(Some(p), &format!("{place}.points[{i}]")));
-    let colour = |value: Option<&Value>, place: &str| {
-        let channels = value.and_then(Value::as_array).filter(|list| list.len() == 3);
-        let channel = |c: usize| channels?[c].as_f64().filter(|v| (0.0..=1.0).contains(v)).map(|v| v as f32);
-        let all = || Some([channel(0)?, channel(1)?, channel(2)?]);
-        all().ok_or_else(|| wrong(place, &described(value), "three numbers from 0 to 1"))
-    };
+    let Line { points, closed, fill, widths, colour } = line::read(fields, place, share)?;
     let peg = |value: Option<&Value>, place: &str| named(value, place, pegs);
-    let closed = flag(fields.get("closed"), &format!("{place}.closed"))?;
-    let fill = given(fields, place, "fill", flag)?.unwrap_or(false);
-    if fill && !closed {
-        return Err(wrong(&format!("{place}.fill"), "true on an open stroke", "a closed stroke"));
-    }
     Ok(DrawnStroke {
-        points: points.collect::<Result<_, _>>()?,
+        points,
         closed,
         fill,
-        colour: given(fields, place, "colour", colour)?,
+        widths,
+        colour,
         material: given(fields, place, "material", count)?,
         layer: given(fields, place, "layer", count)?,
         peg: given(fields, place, "peg", peg)?,

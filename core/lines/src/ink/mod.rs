@@ -33,6 +33,8 @@ const CERTAIN: f32 = 1.25;
 const FAINT: f32 = 0.85;
 /// Least area of a component in pixels at 540 lines; it grows with the number of lines.
 const DOT: f64 = 10.0;
+/// Share of the ink that may be darker than what is taken to be the darkest.
+const SPECKS: f64 = 0.02;
 const BINS: usize = 256;
 
 /// The ink of a picture.
@@ -42,6 +44,8 @@ pub struct Ink {
     pub darkness: Raster<f32>,
     /// The darkness from which a pixel is ink.
     pub level: f32,
+    /// How dark the darkest ink of the picture is, without the blur. A few darker specks do not count.
+    pub darkest: f32,
     /// The pixels of ink.
     pub mask: Raster<bool>,
     /// Distance of each pixel of ink from the nearest pixel without ink.
@@ -66,16 +70,19 @@ pub fn measure(picture: &Raster<Colour>, sensitivity: f64) -> Ink {
     let (width, height) = (picture.width(), picture.height());
     if width == 0 || height == 0 {
         let (darkness, mask) = (Raster::new(0, 0, 0.0), Raster::new(0, 0, false));
-        return Ink { depth: darkness.clone(), darkness, level: 1.0, mask };
+        return Ink { depth: darkness.clone(), darkness, level: 1.0, darkest: 1.0, mask };
     }
     let paper = paper::estimate(picture);
-    let darkness = blur(&darkness(picture, &paper), BLUR, Border::Replicate);
+    let hard = darkness(picture, &paper);
     drop(paper);
+    let sharp = histogram(&hard);
+    let darkness = blur(&hard, BLUR, Border::Replicate);
+    drop(hard);
     let level = (level(&darkness) / sensitivity.max(1e-3) as f32).clamp(1e-3, 10.0);
     let mut mask = hysteresis(&darkness, level);
     let area = (DOT * height as f64 / 540.0).clamp(4.0, 60.0) as usize;
     without_specks(&mut mask, area);
-    Ink { depth: distance::inside(&mask), darkness, level, mask }
+    Ink { depth: distance::inside(&mask), darkness, level, darkest: darkest(&sharp, level), mask }
 }
 
 fn darkness(picture: &Raster<Colour>, paper: &Paper) -> Raster<f32> {
@@ -102,12 +109,26 @@ fn darkness(picture: &Raster<Colour>, paper: &Paper) -> Raster<f32> {
     out
 }
 
-/// The darkness that separates ink from paper.
-fn level(darkness: &Raster<f32>) -> f32 {
+fn histogram(darkness: &Raster<f32>) -> [u64; BINS] {
     let mut histogram = [0u64; BINS];
     for &d in darkness.data() {
         histogram[(d * (BINS - 1) as f32 + 0.5) as usize] += 1;
     }
+    histogram
+}
+
+/// The darkness that all but the darkest [`SPECKS`] of the ink do not exceed.
+fn darkest(histogram: &[u64; BINS], level: f32) -> f32 {
+    let ink = || (0..BINS).map(|i| (i as f32 / (BINS - 1) as f32, histogram[i])).filter(|&(dark, _)| dark > level);
+    let most = SPECKS * ink().map(|(_, count)| count).sum::<u64>() as f64;
+    let mut seen = 0;
+    let found = Vec::from_iter(ink()).into_iter().rev().find(|&(_, count)| (seen += count, seen as f64 > most).1);
+    found.map_or(1.0, |(dark, _)| dark)
+}
+
+/// The darkness that separates ink from paper.
+fn level(darkness: &Raster<f32>) -> f32 {
+    let histogram = histogram(darkness);
     (LOWER * otsu(&histogram)).max(LEAST).max(GRAIN * grain(&histogram))
 }
 

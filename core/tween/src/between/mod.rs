@@ -14,6 +14,8 @@
 //!    brings it nearer to both keys, the ink flows instead (`flowing`). Where it stays hardly nearer to the keys than they are to
 //!    each other, the earlier key is held: its own strokes are drawn (`present`).
 //!
+//! `look` gives strokes their widths and colours.
+//!
 //! Where the movement between the keys was captured from footage, strokes follow it instead: `captured`,
 //! [`Sequence::following`].
 //!
@@ -33,6 +35,7 @@ mod deform;
 mod flowing;
 mod join;
 mod leaving;
+mod look;
 mod motion;
 mod present;
 mod sure;
@@ -410,26 +413,6 @@ impl Sequence {
         };
         let [before, after] = &self.exchanged[k];
         on(k, before) || on(k + 1, after)
-    }
-
-    /// The attributes of a track without its points.
-    fn look(&self, t: usize, k: usize, u: f64) -> Stroke {
-        let stroke = |key: usize| self.tracks[t].at(key).map(|stand| &self.keys[key].strokes[stand.stroke]);
-        let (before, after) = (stroke(k), stroke(k + 1));
-        let own = before.or(after);
-        let colour = match (before.and_then(|s| s.colour), after.and_then(|s| s.colour)) {
-            (Some(a), Some(b)) => Some([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * u as f32)),
-            (a, b) => a.or(b),
-        };
-        Stroke {
-            points: Vec::new(),
-            closed: self.tracks[t].closed,
-            colour,
-            // Pieces of an outline are open, and enclose nothing.
-            fill: self.tracks[t].closed && own.is_some_and(|s| s.fill),
-            material: own.and_then(|s| s.material),
-            layer: own.and_then(|s| s.layer),
-        }
     }
 
     /// The contacts of a span, between tracks.
