@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import bpy
 import numpy as np
 from shots import write_png
@@ -31,8 +33,9 @@ def lines(frame: int) -> list[tuple[np.ndarray, float, tuple[int, int, int]]]:
     return [(points * SCALE, width, colour) for points, width, colour in drawn]
 
 
+@cache
 def picture(frame: int) -> np.ndarray:
-    """The drawing as pixels, with smooth edges."""
+    """The drawing as pixels, with smooth edges. It is drawn once: nobody may change it."""
     width, height = SIZE
     xs, ys = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     found = np.tile(np.array(PAPER, float), (height, width, 1))
@@ -48,7 +51,9 @@ def picture(frame: int) -> np.ndarray:
             away[box] = np.minimum(away[box], np.hypot(x - along * way[0], y - along * way[1]))
         cover = (line_width / 2 + 0.5 - away).clip(0, 1)[..., None]
         found += cover * (np.array(colour, float) - found)
-    return found.round().astype(np.uint8)
+    made = found.round().astype(np.uint8)
+    made.flags.writeable = False
+    return made
 
 
 def draw_sequence(folder):

@@ -18,23 +18,29 @@ def film(addon, library, pictures):
     return ls.set_up(pictures)
 
 
-@pytest.fixture(scope="module")
-def kept():
-    """Where the file of the traced film is, once a test has made it."""
-    return {}
+def opened(pictures, name, make):
+    """Opens the file of a scene beside its pictures; the first test that needs it makes it. Returns the active object.
+
+    To open a file takes a hundredth of the time that tracing or painting the film takes.
+    """
+    path = pictures.with_name(f"{name}.blend")
+    if not path.exists():
+        make()
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    return bpy.context.object
 
 
 @pytest.fixture
-def traced(addon, film, kept, pictures):
+def traced(addon, film, pictures):
     """The film, traced."""
-    if not kept:
+
+    def trace():
         addon("lines.tracing").make = addon("rototoon").Session.from_document
         assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
         assert said(addon).text == "6 strokes on 6 frames"
-        kept["path"] = str(pictures.with_name("traced.blend"))
-        bpy.ops.wm.save_as_mainfile(filepath=kept["path"])
-    bpy.ops.wm.open_mainfile(filepath=kept["path"])
-    return bpy.context.object
+
+    return opened(pictures, "traced", trace)
 
 
 def kinds(addon, ob, layer):

@@ -2,13 +2,19 @@
 
 import struct
 import zlib
+from functools import cache
 
 import bpy
 import numpy as np
 
 
 def write_png(path, picture):
-    """An 8-bit RGB picture (H, W, 3)."""
+    """Writes an 8-bit RGB picture (H, W, 3)."""
+    path.write_bytes(png(picture))
+
+
+def png(picture):
+    """An 8-bit RGB picture (H, W, 3) as a file."""
     height, width, _ = picture.shape
 
     def chunk(kind, data):
@@ -17,7 +23,7 @@ def write_png(path, picture):
     rows = b"".join(b"\0" + picture[y].tobytes() for y in range(height))
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
     body = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + body)
+    return b"\x89PNG\r\n\x1a\n" + body
 
 
 SIZE = (160, 90)
@@ -46,16 +52,22 @@ def inside(polygon, xs, ys):
 def draw_sequence(folder, name="shot_%03d.png", first=1, count=COUNT):
     """Pictures of a red square and a blue diamond with dark outlines, moving over a pale ground."""
     folder.mkdir(parents=True, exist_ok=True)
+    for number in range(count):
+        (folder / (name % (first + number))).write_bytes(drawn(number))
+    return folder / (name % first)
+
+
+@cache
+def drawn(number):
+    """Picture `number` as a file. Most tests want the same few."""
     width, height = SIZE
     xs, ys = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    for number in range(count):
-        picture = np.full((height, width, 3), (235, 228, 210), np.uint8)
-        for shape, colour in ((diamond(number), (50, 90, 200)), (square(number), (205, 50, 45))):
-            centre = shape.mean(0)
-            picture[inside(shape, xs, ys)] = (25, 20, 30)
-            picture[inside(centre + (shape - centre) * 0.88, xs, ys)] = colour
-        write_png(folder / (name % (first + number)), picture)
-    return folder / (name % first)
+    picture = np.full((height, width, 3), (235, 228, 210), np.uint8)
+    for shape, colour in ((diamond(number), (50, 90, 200)), (square(number), (205, 50, 45))):
+        centre = shape.mean(0)
+        picture[inside(shape, xs, ys)] = (25, 20, 30)
+        picture[inside(centre + (shape - centre) * 0.88, xs, ys)] = colour
+    return png(picture)
 
 
 def set_up(folder, **options):

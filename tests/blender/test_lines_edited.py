@@ -4,7 +4,7 @@ import bpy
 import line_shots as ls
 import numpy as np
 import pytest
-from line_stage import film, kept, pictures, traced  # noqa: F401 - fixtures
+from line_stage import film, pictures, traced  # noqa: F401 - fixtures
 from line_stage import attribute, away, handle_of, kinds, number_of, said
 
 

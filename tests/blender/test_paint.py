@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import stand_in
 from line_stage import film, pictures  # noqa: F401 - fixtures
-from line_stage import attribute, handle_of, kinds, rendered, said
+from line_stage import attribute, handle_of, kinds, opened, rendered, said
 
 PAPER, SKIN, EYE, GREEN = (1.0, 1.0, 1.0), (0.93, 0.76, 0.62), (0.2, 0.4, 0.9), (0.1, 0.7, 0.2)
 LAYER = "Paint"
@@ -30,19 +30,25 @@ def click(ob, place, colour):
 
 
 @pytest.fixture
-def clicked(film):  # noqa: F811
+def clicked(film, pictures):  # noqa: F811
     """The film with all regions of frame 1 filled by the bucket."""
-    for place, colour in places(1):
-        assert click(film, place, colour) == {"FINISHED"}
-    return film
+
+    def fill():
+        for place, colour in places(1):
+            assert click(film, place, colour) == {"FINISHED"}
+
+    return opened(pictures, "clicked", fill)
 
 
 @pytest.fixture
-def painted(addon, clicked):
+def painted(addon, clicked, pictures):  # noqa: F811
     """The film, painted."""
-    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
-    assert said(addon).text == "24 regions on 6 frames"
-    return clicked
+
+    def paint():
+        assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+        assert said(addon).text == "24 regions on 6 frames"
+
+    return opened(pictures, "painted", paint)
 
 
 def colour_at(addon, ob, frame, place):
