@@ -1,6 +1,6 @@
 //! Time of tracing and of carrying: a 1920×1080 drawing of 100 strokes, and one of 5,000 marks.
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/main/common.rs"]
 mod common;
 
 use common::{Line, draw, line, white};

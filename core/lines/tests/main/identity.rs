@@ -1,10 +1,6 @@
 //! The same strokes on every drawing, measured exactly: drawn characters whose strokes are known.
 
-#[path = "common/characters.rs"]
-mod characters;
-mod common;
-
-use characters::{Character, Manner, cat, drawn, flower, look, penguin, right, strokes, walker};
+use super::characters::{Character, Manner, cat, drawn, flower, look, penguin, right, strokes, walker};
 use rototoon_lines::{Key, Tracked, between, carry};
 use std::convert::Infallible;
 

@@ -1,8 +1,6 @@
 //! Strokes carried over drawings whose lines are known on every frame.
 
-mod common;
-
-use common::{Line, covered, draw, line, ring, white};
+use super::common::{Line, covered, draw, line, ring, white};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_lines::{Drawing, Options, Stroke, Tracked, carry, identify};
 

@@ -1,8 +1,6 @@
 //! Tracing of drawings whose lines are known.
 
-mod common;
-
-use common::{Line, covered, draw, line, ring, white};
+use super::common::{Line, covered, draw, line, ring, white};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::Raster;
 use rototoon_lines::{Options, Stroke, Style, trace};

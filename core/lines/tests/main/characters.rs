@@ -3,7 +3,7 @@
 //! The truth of a stroke is the part of its outline that is visible, found by the parts in front of it. The measure is the
 //! share of the strokes' length that lies on the stroke with the right number.
 
-use crate::common::{Line, covered, draw_onto};
+use super::common::{Line, covered, draw_onto};
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_lines::{Drawing, Options, Stroke, Tracked};

@@ -1,8 +1,6 @@
 //! Solid blacks beside lines: which ink is a shape, which is a line, and how exact the outline is.
 
-mod common;
-
-use common::{Line, covered, draw, draw_onto, line, ring, white};
+use super::common::{Line, covered, draw, draw_onto, line, ring, white};
 use rototoon_base::geometry::{Point, polygon, polyline};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_lines::{Drawing, Options, Stroke, Style, Tracked, carry, trace};

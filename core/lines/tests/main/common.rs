@@ -1,6 +1,6 @@
 //! Drawings made of known lines.
 
-#![allow(dead_code)] // Each test uses a part of it.
+#![allow(dead_code)] // The benchmark uses a part of it.
 
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{Colour, Raster};

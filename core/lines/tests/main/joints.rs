@@ -1,8 +1,6 @@
 //! Which line goes on where several meet: corners, overlapping parts, crossings of several lines.
 
-mod common;
-
-use common::{Line, covered, draw, line, ring, white};
+use super::common::{Line, covered, draw, line, ring, white};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_lines::{Options, Stroke, Style, trace};
 

@@ -1,8 +1,6 @@
 //! Pictures that are no clean line drawings.
 
-mod common;
-
-use common::{Line, covered, draw, line, ring, white};
+use super::common::{Line, covered, draw, line, ring, white};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_lines::{Drawing, Options, Stroke, Style, Tracked, carry, trace};
