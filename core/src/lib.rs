@@ -5,7 +5,8 @@
 //! | name here | crate | what it does |
 //! | --- | --- | --- |
 //! | [`numeric`], [`geometry`], [`curve`], [`scene`] | `rototoon-base` | what all stages share |
-//! | [`image`] | `rototoon-image` | pictures from files, filters, optical flow |
+//! | [`image`] | `rototoon-image` | filters, optical flow |
+//! | [`pictures`] | `rototoon-pictures` | pictures from files |
 //! | [`fit`] | `rototoon-fit` | quadratic B-splines from points |
 //! | [`lines`] | `rototoon-lines` | drawn lines as strokes, the same on all frames |
 //! | [`fill`] | `rototoon-fill` | colours of regions, carried from painted drawings |
@@ -82,6 +83,7 @@ pub use rototoon_fill as fill;
 pub use rototoon_fit as fit;
 pub use rototoon_image as image;
 pub use rototoon_lines as lines;
+pub use rototoon_pictures as pictures;
 pub use rototoon_render as render;
 pub use rototoon_reshape as reshape;
 pub use rototoon_snap as snap;

@@ -201,7 +201,7 @@ impl FrameSource for Pictures {
 mod tests {
     use super::*;
     use crate::truth::Truth;
-    use rototoon::image::Sequence;
+    use rototoon::pictures::Sequence;
 
     const SMALL: Puppet = Puppet { width: 120, height: 90, frames: 5, step: 2, parts: 3, points: 8 };
 

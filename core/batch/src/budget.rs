@@ -9,7 +9,7 @@
 //! Decoded frames are kept from one step of a shot to the next as far as its part of the budget has room for them
 //! beside the steps.
 
-use rototoon::image::decode::kept_size;
+use rototoon::pictures::decode::kept_size;
 use rototoon::scene::{Footage, FramePattern};
 use std::path::Path;
 use std::sync::{Condvar, Mutex, PoisonError};

@@ -5,7 +5,7 @@ use crate::sheet::Drawings;
 use crate::status::Failure;
 use crate::work::{GoOn, run};
 use rototoon::geometry::polyline::first_unusable;
-use rototoon::image::Sequence;
+use rototoon::pictures::Sequence;
 use rototoon::pipeline::{PipelineError, Suggestion, suggest_breakdown};
 use rototoon::project::Document;
 use rototoon::scene::{FrameNumber, Progress};

@@ -5,7 +5,7 @@ use crate::options::Options;
 use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
-use rototoon::image::sequence::Sequence;
+use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::Document;
 use rototoon::project::fills::FillClicks;

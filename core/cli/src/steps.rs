@@ -4,7 +4,7 @@
 use crate::failure::{Failure, WRONG_USE, line};
 use crate::{progress, usage};
 use clap::{Arg, ArgMatches, Command, value_parser};
-use rototoon::image::store;
+use rototoon::pictures::store;
 use rototoon_batch::answer::{Answer, processor_ms, words};
 use std::io::{BufRead, Write, stderr, stdin};
 

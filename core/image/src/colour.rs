@@ -16,6 +16,7 @@ use rototoon_base::scene::{Colour, Raster};
 use std::sync::LazyLock;
 
 /// Linear light to an sRGB-encoded value.
+#[inline]
 pub fn encode(light: f32) -> f32 {
     let l = light.abs();
     let value = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
@@ -23,6 +24,7 @@ pub fn encode(light: f32) -> f32 {
 }
 
 /// An sRGB-encoded value to linear light.
+#[inline]
 pub fn decode(value: f32) -> f32 {
     let v = value.abs();
     let light = if v <= 0.040_45 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) };

@@ -10,8 +10,7 @@
 
 use rototoon_base::numeric::vector::vectorised;
 use rototoon_base::scene::Raster;
-use rustfft::num_complex::Complex32;
-use rustfft::{Fft, FftPlanner};
+use rototoon_fourier::{Complex32, Fft, plans};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -42,10 +41,8 @@ impl Correlator {
     /// quickly.
     pub fn new(width: usize, height: usize) -> Self {
         let (width, height) = (smooth(width), smooth(height));
-        let mut planner = FftPlanner::new();
-        let forward = [planner.plan_fft_forward(width), planner.plan_fft_forward(height)];
-        let inverse = [planner.plan_fft_inverse(width), planner.plan_fft_inverse(height)];
-        Self { width, height, forward, inverse }
+        let [[forward_x, inverse_x], [forward_y, inverse_y]] = plans([width, height]);
+        Self { width, height, forward: [forward_x, forward_y], inverse: [inverse_x, inverse_y] }
     }
 
     /// The transform of a picture, padded with zeros.

@@ -1,12 +1,11 @@
-//! Pictures from files, and the filters, edges and motion fields that are computed from them.
+//! Filters of pictures, and the edges and motion fields that are computed from them.
 //!
-//! This crate knows pixels only. It follows no contours (`rototoon-track`), and it draws and writes no pictures
-//! (`rototoon-render`).
+//! This crate knows pixels only. It reads no files (`rototoon-pictures`), follows no contours (`rototoon-track`), and draws and
+//! writes no pictures (`rototoon-render`).
 //!
 //! - [`canny`]: edges of the luma
 //! - [`colour`]: sRGB, luma and CIE Lab
 //! - [`correlation`]: correlation by the fast Fourier transform
-//! - [`decode`](mod@decode): a picture from a file
 //! - [`distance_transform`]: Manhattan distance to the nearest edge
 //! - [`flow`]: dense optical flow by inverse search
 //! - [`gaussian`]: separable blur
@@ -15,8 +14,6 @@
 //! - [`pyramid`]: a picture at halved sizes
 //! - [`resize`]: area reduction and bilinear enlargement
 //! - [`sample`]: bilinear reading with derivatives
-//! - [`sequence`]: the pictures of a footage, decoded in parallel, with a cache
-//! - [`store`]: frames that a program keeps for several steps
 //!
 //! # Example
 //!
@@ -43,23 +40,11 @@
 pub mod canny;
 pub mod colour;
 pub mod correlation;
-pub mod decode;
 pub mod distance_transform;
-mod error;
 pub mod flow;
 pub mod gaussian;
-mod jpeg;
 pub mod mean_shift;
-mod open;
 pub mod pixel;
 pub mod pyramid;
 pub mod resize;
 pub mod sample;
-pub mod sequence;
-pub mod store;
-mod stored;
-mod tiles;
-
-pub use decode::{decode, probe};
-pub use error::DecodeError;
-pub use sequence::Sequence;

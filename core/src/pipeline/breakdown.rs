@@ -1,8 +1,8 @@
 //! The frame on which a breakdown helps most, with the footage as a line test where there is one.
 
 use super::{PipelineError, memory};
-use crate::image::Sequence;
 use crate::lines::apart::{Apart, Shown as Seen, most};
+use crate::pictures::Sequence;
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use crate::tween::breakdown::{Breakdown, Reason, Shown, suggest};
 use serde_json::{Value, json};

@@ -2,7 +2,7 @@
 
 use super::PipelineError;
 use super::tween::{peg_of, spacing};
-use crate::image::Sequence;
+use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::{Document, Problems};
 use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};

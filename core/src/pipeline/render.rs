@@ -3,7 +3,7 @@
 use super::paint::{Shown, sized};
 use super::picture::{Picture, RenderJob};
 use super::{PipelineError, frames, frames_of, memory};
-use crate::image::Sequence;
+use crate::pictures::Sequence;
 use crate::project::{Document, Inputs, write_whole};
 use crate::render::{self, Format};
 use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};

@@ -1,8 +1,8 @@
 //! Tiny pictures of every format, and reading of bytes as a picture file.
 
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb, Rgba};
-use rototoon::image::DecodeError;
-use rototoon::image::decode::{decode, decode_layer, probe};
+use rototoon::pictures::DecodeError;
+use rototoon::pictures::decode::{decode, decode_layer, probe};
 use std::io::Cursor;
 use std::path::PathBuf;
 use std::sync::OnceLock;

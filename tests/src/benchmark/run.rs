@@ -9,7 +9,7 @@ use crate::measure::{Row, percentile, rows};
 use crate::memory::peak_mb;
 use crate::truth::Truth;
 use anyhow::Result;
-use rototoon::image::Sequence;
+use rototoon::pictures::Sequence;
 use rototoon::pipeline::{frames, in_effect, store};
 use rototoon::project::Document;
 use rototoon::project::save::DECIMALS;

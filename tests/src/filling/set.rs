@@ -1,7 +1,7 @@
 //! Line drawings with the same drawings in colour, from a folder.
 
 use anyhow::{Context, Result, ensure};
-use rototoon::image::decode::probe;
+use rototoon::pictures::decode::probe;
 use rototoon::scene::Raster;
 use std::path::{Path, PathBuf};
 

@@ -6,7 +6,7 @@ use super::Set;
 use super::between::{drawings, off, points, sequence};
 use anyhow::{Context, Result};
 use rototoon::geometry::Point;
-use rototoon::image;
+use rototoon::pictures::Sequence;
 use rototoon::pipeline::suggest_breakdown;
 use rototoon::scene::Silent;
 use rototoon::tween::Stroke;
@@ -95,7 +95,7 @@ fn suggested(set: &Set, keys: &[i32], options: &Options) -> Result<i32> {
         Shown { frame, key: keys.contains(&frame), strokes, apart: None }
     };
     let drawings = (keys[0]..=keys[keys.len() - 1]).map(shown).collect();
-    let pictures = image::Sequence::new(&set.footage, &set.folder)?;
+    let pictures = Sequence::new(&set.footage, &set.folder)?;
     let found = suggest_breakdown(drawings, Some(&pictures), &Silent)?;
     Ok(found.context("nothing lies between the keys")?.breakdown.frame)
 }

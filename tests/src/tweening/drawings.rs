@@ -4,8 +4,8 @@
 use super::ink::{InkErrors, ink};
 use anyhow::{Context, Result};
 use rototoon::geometry::Point;
-use rototoon::image::decode::decode;
 use rototoon::lines::{Drawing, Options as LineOptions};
+use rototoon::pictures::decode::decode;
 use rototoon::scene::Silent;
 use rototoon::tween::Stroke;
 use rototoon::tween::between::{GivenPegs, Key, Options, Sequence};

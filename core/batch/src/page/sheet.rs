@@ -11,7 +11,7 @@ use rototoon::image::resize::resize;
 use rototoon::project::{Document, WriteError, write_whole};
 use rototoon::render::{OverlayOptions, overlay};
 use rototoon::scene::{Colour, FrameNumber, FrameSource, Raster};
-use rototoon::{image as pictures, memory};
+use rototoon::{memory, pictures};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

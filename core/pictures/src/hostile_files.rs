@@ -1,7 +1,10 @@
 //! Picture files that are cut, or that are no regular files.
+//!
+//! They are unit tests, although they need nothing private: a test program of their own would compile all writers of pictures
+//! once more, which takes 9 s.
 
+use crate::{DecodeError, decode};
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
-use rototoon_image::{DecodeError, decode};
 use std::io::Cursor;
 use std::path::Path;
 

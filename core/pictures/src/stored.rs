@@ -4,11 +4,11 @@
 //! Floats that came from 16-bit floats, as nearly all OpenEXR files have them, are kept with 16 bits again if every one of
 //! them stays what it was.
 
-use super::colour::{decode as to_light, encode};
 use super::decode::BACKDROP;
 use half::f16;
 use image::DynamicImage;
 use rototoon_base::scene::Colour;
+use rototoon_image::colour::{decode as to_light, encode};
 
 /// A picture as its file has it.
 #[derive(Debug)]

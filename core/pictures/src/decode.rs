@@ -112,8 +112,8 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, Decode
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::colour::{decode as to_light, encode};
     use image::{ExtendedColorType, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+    use rototoon_image::colour::{decode as to_light, encode};
     use std::path::PathBuf;
     use tempfile::TempDir;
 
