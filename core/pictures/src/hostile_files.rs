@@ -5,6 +5,7 @@
 
 use crate::{DecodeError, decode};
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
+use std::fs::File;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -21,8 +22,7 @@ fn drawing(format: ImageFormat) -> Vec<u8> {
     bytes
 }
 
-fn decoded(path: &Path, bytes: &[u8]) -> Result<Vec<[f32; 3]>, DecodeError> {
-    std::fs::write(path, bytes).unwrap();
+fn decoded(path: &Path) -> Result<Vec<[f32; 3]>, DecodeError> {
     decode(path, Some((23, 19))).map(|picture| picture.data().to_vec())
 }
 
@@ -33,10 +33,14 @@ fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
     let path = folder.path().join("frame");
     for format in [Png, Jpeg, Tiff, Bmp, WebP, OpenExr] {
         let whole = drawing(format);
-        let pixels = decoded(&path, &whole).unwrap();
+        std::fs::write(&path, &whole).unwrap();
+        let pixels = decoded(&path).unwrap();
         let mut refused = 0;
-        for length in 0..whole.len() {
-            match decoded(&path, &whole[..length]) {
+        // The file is shortened byte by byte: a file that is written anew for each length waits for the disk.
+        let file = File::options().write(true).open(&path).unwrap();
+        for length in (0..whole.len()).rev() {
+            file.set_len(length as u64).unwrap();
+            match decoded(&path) {
                 Ok(found) => {
                     assert!(found == pixels, "{format:?}: {length} of {} bytes give other pixels", whole.len())
                 }
@@ -50,8 +54,9 @@ fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
 #[test]
 fn a_cut_jpeg_names_the_reason() {
     let folder = tempfile::tempdir().unwrap();
-    let whole = drawing(ImageFormat::Jpeg);
-    let error = decoded(&folder.path().join("frame.jpg"), &whole[..whole.len() / 2]).unwrap_err().to_string();
+    let (path, whole) = (folder.path().join("frame.jpg"), drawing(ImageFormat::Jpeg));
+    std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    let error = decoded(&path).unwrap_err().to_string();
     assert!(error.starts_with("the JPEG file is cut: its "), "{error}");
 }
 
