@@ -56,9 +56,7 @@ impl<'a> Grid<'a> {
         let (x, y) = self.cell_of(p);
         let mut found: Vec<(f64, usize)> = Vec::new();
         for ring in 0..=self.columns.max(self.rows) {
-            self.ring((x, y), ring, |i| found.push((self.places[i].distance_squared(p), i)));
-            found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            found.truncate(count);
+            self.ring((x, y), ring, |i| keep(&mut found, count, (self.places[i].distance_squared(p), i)));
             // Every place outside the ring is at least this far from `p`.
             let beyond = self.beyond(p, (x, y), ring);
             if found.len() == count && found.last().is_none_or(|last| last.0 <= beyond * beyond) {
@@ -94,6 +92,15 @@ impl<'a> Grid<'a> {
                 column += step;
             }
         }
+    }
+}
+
+/// Puts a place into a sorted list of the `count` nearest ones, with its squared distance.
+fn keep(found: &mut Vec<(f64, usize)>, count: usize, (distance, place): (f64, usize)) {
+    let nearer = |other: &(f64, usize)| other.0.total_cmp(&distance).then(other.1.cmp(&place)).is_lt();
+    if found.len() < count || found.last().is_some_and(|last| !nearer(last)) {
+        found.truncate(count.saturating_sub(1));
+        found.insert(found.partition_point(nearer), (distance, place));
     }
 }
 
