@@ -3,29 +3,17 @@
 //! Each source says what colour a region has: the sum over the source's regions of [u'](crate::relax) times their colours. The
 //! sum over the sources, squared and divided by its total, is the probability of a colour. Sources are the artist's
 //! own drawings before and behind, and the last drawing that was painted: own drawings are right but far away, the last one is near
-//! but may be wrong.
-//!
-//! # Confidence
-//!
-//! The probability that a colour is right is a logistic regression on three values: the logit of the colour's own
-//! probability; the logarithm of the largest a b + 0.001 a + s ([`crate::meet`]), which says whether the region was seen before; and the share of
-//! regions without paint among those of the artist's drawings that it may be. The latter says most: of such a region the artist said
-//! nothing.
+//! but may be wrong. How sure each colour is says [`confidence`](crate::confidence).
 
+use crate::confidence::{evidence, probability};
 use crate::layout::Layout;
 use crate::leaks::leaks;
-use crate::meet::{Meeting, Table, meeting};
+use crate::meet::{Table, meeting};
 use crate::page::{Page, Paint};
 use crate::relax::{Relaxed, relax};
 use crate::shifts::Shifts;
 use rototoon_base::geometry::Point;
 use rototoon_lines::displaced;
-
-/// Weights of the three values, and what is added, for the confidence.
-const OWN: f64 = 0.28;
-const SEEN: f64 = 0.48;
-const UNPAINTED: f64 = -3.9;
-const SOUND: f64 = 0.45;
 
 /// A painted drawing from which colours come.
 pub struct Source<'a> {
@@ -38,13 +26,14 @@ pub struct Source<'a> {
 }
 
 /// What a source says.
-struct Said {
-    meeting: Meeting,
-    relaxed: Relaxed,
+pub(crate) struct Said<'a> {
+    /// The source's colours.
+    pub paint: &'a Paint,
+    pub relaxed: Relaxed,
     /// For each region and colour, the sum of u' over the source's regions of this colour.
-    colours: Table,
+    pub colours: Table,
     /// For each region, the share of regions without paint among those that it may be.
-    unpainted: Vec<f32>,
+    pub unpainted: Vec<f32>,
 }
 
 /// The colours of a page from painted ones, of which the last one gives the numbers of regions. Regions that are new
@@ -58,32 +47,34 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
         }
     }
     let page = &*page;
-    let said: Vec<Option<Said>> =
-        sources.iter().zip(&shifts).map(|(source, both)| Some(said(source, page, both.as_ref()?))).collect();
-    let palette = sources.first()?.paint.colours.first()?.len();
+    let known: Vec<Said> =
+        sources.iter().zip(&shifts).filter_map(|(source, both)| Some(said(source, page, both.as_ref()?))).collect();
+    let last = known.last()?;
+    let palette = last.paint.colours.first()?.len();
     let mut paint = Paint::nothing(page.regions.count, palette);
-    let known: Vec<&Said> = said.iter().flatten().collect();
-    if known.is_empty() {
+    for j in 1..=page.regions.count {
+        if let Some(row) = probabilities(&known, j, palette) {
+            paint.colours[j] = row;
+        }
+    }
+    paint.evidence = evidence(&known, &page.layout, &paint);
+    paint.confidence = paint.evidence.iter().map(|own| own.as_ref().map_or(0.0, probability)).collect();
+    number(&mut paint, last.paint, &last.relaxed.all, &page.layout, next);
+    Some(paint)
+}
+
+/// The probability of each colour of a region. `None` if no source has a colour for it.
+fn probabilities(known: &[Said], region: usize, palette: usize) -> Option<Vec<f32>> {
+    let sum = |c: usize| known.iter().map(|said| said.colours[region][c]).sum::<f32>();
+    // Divided by the largest, so that their squares stay finite.
+    let sums: Vec<f32> = (0..palette).map(sum).collect();
+    let most = sums.iter().copied().fold(0.0, f32::max);
+    if most <= 0.0 {
         return None;
     }
-    for j in 1..=page.regions.count {
-        let sum = |c: usize| known.iter().map(|said| said.colours[j][c]).sum::<f32>();
-        // Divided by the largest, so that their squares stay finite.
-        let sums: Vec<f32> = (0..palette).map(sum).collect();
-        let most = sums.iter().copied().fold(0.0, f32::max);
-        if most <= 0.0 {
-            continue;
-        }
-        let squares: Vec<f32> = sums.iter().map(|sum| (sum / most).powi(2)).collect();
-        let total: f32 = squares.iter().sum();
-        paint.colours[j] = squares.iter().map(|square| square / total).collect();
-        paint.confidence[j] = confidence(&known, j, f64::from(1.0 / total));
-    }
-    let numbered = sources.iter().zip(&said).rev().find_map(|(source, said)| Some((source, said.as_ref()?)));
-    if let Some((source, said)) = numbered {
-        number(&mut paint, source.paint, &said.relaxed.all, &page.layout, next);
-    }
-    Some(paint)
+    let squares: Vec<f32> = sums.iter().map(|sum| (sum / most).powi(2)).collect();
+    let total: f32 = squares.iter().sum();
+    Some(squares.iter().map(|square| square / total).collect())
 }
 
 /// The shifts from a source to a page, and back.
@@ -104,16 +95,16 @@ fn both(from: &Page, to: &Page) -> Option<Both> {
     related.then(|| Both { ahead: shifts(from, &ahead.places), back: shifts(to, &back.places) })
 }
 
-fn said(source: &Source, page: &Page, shifts: &Both) -> Said {
+fn said<'a>(source: &Source<'a>, page: &Page, shifts: &Both) -> Said<'a> {
     let (from, to) = (&source.page.layout, &page.layout);
     let meeting = meeting(from, to, &shifts.ahead, &shifts.back);
-    let relaxed = relax(from, to, &meeting.all, &source.paint.colours);
+    let relaxed = relax(from, to, &meeting, &source.paint.colours);
     let colours = relaxed.all.iter().map(|row| weighted(row, &source.paint.colours)).collect();
     let bare = |sure: &f64| if source.own { (1.0 - sure) as f32 } else { 0.0 };
     let bare: Vec<f32> = source.paint.confidence.iter().map(bare).collect();
     let unpainted = relaxed.sure.iter().map(|row| row.iter().zip(&bare).skip(1).map(|(m, bare)| m * bare).sum());
     let unpainted = unpainted.collect();
-    Said { meeting, relaxed, colours, unpainted }
+    Said { paint: source.paint, relaxed, colours, unpainted }
 }
 
 fn weighted(row: &[f32], colours: &Table) -> Vec<f32> {
@@ -122,16 +113,6 @@ fn weighted(row: &[f32], colours: &Table) -> Vec<f32> {
         out.iter_mut().zip(own).for_each(|(sum, colour)| *sum += weight * colour);
     }
     out
-}
-
-/// The probability that the colour of a region is right, which has the probability `own` among all colours.
-fn confidence(said: &[&Said], region: usize, own: f64) -> f64 {
-    let most = |value: &dyn Fn(&Said) -> f32| f64::from(said.iter().map(|said| value(said)).fold(0.0, f32::max));
-    let seen = most(&|said| said.meeting.best[region]);
-    let unpainted = most(&|said| said.unpainted[region]);
-    let logit = ((own + 1e-3) / (1.0 - own + 1e-3)).ln();
-    let odds = OWN * logit + SEEN * (seen + 0.01).ln() + UNPAINTED * unpainted + SOUND;
-    1.0 / (1.0 + (-odds).exp())
 }
 
 /// Gives each painted region the number of the source's region of its colour that it meets best. Of several regions that meet the

@@ -15,7 +15,8 @@
 //! - [`meet`]: how well each region of one drawing meets each of another one
 //! - [`relax`]: who is who, by neighbours
 //! - [`page`]: a drawing, and clicks that paint it
-//! - [`carry`](mod@carry): colours, numbers and confidence on the next drawing
+//! - [`carry`](mod@carry): colours and numbers on the next drawing
+//! - [`confidence`]: how probable it is that a colour is right
 //! - [`outlines`]: painted regions as outlines with holes
 //! - [`thin`]: outlines with fewer points, the same for both sides of a border
 //!
@@ -63,6 +64,7 @@
 #![forbid(unsafe_code)]
 
 pub mod carry;
+pub mod confidence;
 pub mod layout;
 pub mod leaks;
 pub mod meet;

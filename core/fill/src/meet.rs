@@ -37,16 +37,8 @@ const ANY: f64 = 0.003;
 /// A table with a row for each region of one drawing and a column for each of the other. Row and column 0 are no region.
 pub type Table = Vec<Vec<f32>>;
 
-/// How regions meet.
-pub struct Meeting {
-    /// u of each pair: rows are regions of the later drawing, columns those of the earlier one.
-    pub all: Table,
-    /// For each region of the later drawing the largest a b + 0.001 a + s.
-    pub best: Vec<f32>,
-}
-
-/// How the regions of `to` meet those of `from`. `ahead` are the shifts from `from` to `to`, `back` those from `to` to `from`.
-pub fn meeting(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Meeting {
+/// u of each pair: rows are regions of `to`, columns those of `from`. `ahead` are the shifts from `from` to `to`, `back` those from `to` to `from`.
+pub fn meeting(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Table {
     let mut carried = covered(from, to, ahead, back);
     for (later, earlier, share) in moved(from, to, back) {
         carried[later][earlier] += 0.5 * share;
@@ -54,7 +46,6 @@ pub fn meeting(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Mee
     for (earlier, later, share) in moved(to, from, ahead) {
         carried[later][earlier] += 0.5 * share;
     }
-    let best = carried.iter().map(|row| row.iter().copied().fold(0.0, f32::max)).collect();
     let height = to.nearest.height() as f64;
     let add = |(j, mut row): (usize, Vec<f32>)| {
         for (i, value) in row.iter_mut().enumerate().skip(1) {
@@ -66,8 +57,7 @@ pub fn meeting(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Mee
         }
         row
     };
-    let all = carried.into_par_iter().enumerate().map(add).collect();
-    Meeting { all, best }
+    carried.into_par_iter().enumerate().map(add).collect()
 }
 
 /// a b + 0.001 a of each pair.
@@ -169,10 +159,10 @@ mod tests {
         let own = layout(0.0);
         let meeting = meeting(&own, &own, &still(), &still());
         for j in 1..own.figures.len() {
-            let row = &meeting.all[j];
+            let row = &meeting[j];
             let best = (1..row.len()).max_by(|&a, &b| row[a].total_cmp(&row[b])).unwrap();
             assert_eq!(best, j);
-            assert!(meeting.best[j] > 1.9, "covered and in shape: {}", meeting.best[j]);
+            assert!(row[j] > 1.9, "covered and in shape: {}", row[j]);
         }
     }
 
@@ -181,7 +171,7 @@ mod tests {
         let (before, after) = (layout(0.0), layout(6.0));
         let meeting = meeting(&before, &after, &still(), &still());
         for j in 2..=3 {
-            let row = &meeting.all[j];
+            let row = &meeting[j];
             let best = (2..row.len()).max_by(|&a, &b| row[a].total_cmp(&row[b])).unwrap();
             assert_eq!(best, j);
         }

@@ -1,5 +1,6 @@
 //! A drawing that is to be painted: its regions, its lines, and what is known about its colours.
 
+use crate::confidence::Evidence;
 use crate::layout::Layout;
 use crate::meet::Table;
 use crate::regions::Regions;
@@ -35,6 +36,8 @@ pub struct Paint {
     pub(crate) tracks: Vec<Option<usize>>,
     /// For each region the probability that its most probable colour is right.
     pub(crate) confidence: Vec<f64>,
+    /// For each region from what its confidence was found; `None` where nothing was carried.
+    pub(crate) evidence: Vec<Option<Evidence>>,
     /// Share of the regions in which an artist clicked.
     pub(crate) clicked: f64,
 }
@@ -46,6 +49,11 @@ impl Page {
         let layout = Layout::new(&regions);
         let lines = Drawing::new(picture, options);
         Self { strokes: lines.strokes(), lines, regions, layout }
+    }
+
+    /// The region at a place in pixels, from 1: the one that it lies in, or to whose line it is near.
+    pub fn at(&self, place: Point) -> Option<usize> {
+        self.regions.at(place)
     }
 
     /// The number of regions.
@@ -80,6 +88,7 @@ impl Page {
             paint.colours[region].fill(0.0);
             paint.colours[region][click.colour] = 1.0;
             paint.confidence[region] = 1.0;
+            paint.evidence[region] = None;
             own.insert(region);
         }
         paint.clicked = own.len() as f64 / self.regions.count.max(1) as f64;
@@ -121,6 +130,7 @@ impl Paint {
             colours: vec![vec![0.0; palette]; regions + 1],
             tracks: vec![None; regions + 1],
             confidence: vec![0.0; regions + 1],
+            evidence: vec![None; regions + 1],
             clicked: 0.0,
         }
     }
@@ -130,8 +140,18 @@ impl Paint {
         self.clicked
     }
 
+    /// The probability that the colour of a region is right, 0 to 1.
+    pub fn confidence(&self, region: usize) -> f64 {
+        self.confidence[region]
+    }
+
+    /// From what the confidence of a region was found. `None` where an artist clicked, and where nothing is painted.
+    pub fn evidence(&self, region: usize) -> Option<&Evidence> {
+        self.evidence[region].as_ref()
+    }
+
     /// The most probable colour of a region.
-    pub(crate) fn colour(&self, region: usize) -> Option<usize> {
+    pub fn colour(&self, region: usize) -> Option<usize> {
         let row = &self.colours[region];
         // Of equal ones the first is taken.
         let best = (0..row.len()).rev().max_by(|&a, &b| row[a].total_cmp(&row[b]))?;

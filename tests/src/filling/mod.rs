@@ -14,12 +14,17 @@
 //! `colour/*.png`. The command (`cargo xtask bench-fill`) measures each set in an optimised process of its own, so that peak memory
 //! is that of one set.
 
+pub mod evidence;
+pub mod figures;
+pub mod films;
 pub mod ink;
 pub mod own;
 pub mod paint;
+pub mod parts;
 pub mod run;
 pub mod score;
 pub mod set;
+pub mod shapes;
 pub mod sheet;
 pub mod table;
 pub mod truth;

@@ -4,97 +4,25 @@
 //! and the ball has a colour that the first drawing does not show. Every line is closed. What is in front covers what is behind, in
 //! lines and in colours alike. The truth of a drawing is read from its pictures, as for other films ([`super::truth`]).
 
+use super::shapes::{Picture, Shape, WHITE, disc, ellipse};
 use crate::sample::character::PARTS;
-use crate::sample::ink::Canvas;
 use crate::sample::outline::Outline;
 use crate::sample::pose::DRAWINGS;
 use crate::sample::rig::Rig;
 use crate::sample::{HEIGHT, WIDTH};
-use anyhow::{Context, Result};
-use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon::geometry::Point;
-use std::path::Path;
-use tiny_skia::{Color, Pixmap};
 
-/// Lines of the film that the benchmark draws.
-pub const LINES: u32 = HEIGHT;
 /// Number of drawings of the film that the benchmark draws.
 pub const COUNT: usize = DRAWINGS.len();
 
-const INK: u32 = 0x1c1820;
-const WHITE: u32 = 0xffffff;
+/// The sky's colour, and that of the paper.
 const SKY: u32 = 0xcfe6f2;
 const CREAM: u32 = 0xfff1d8;
-/// Least width of a line in pixels at 540 lines.
-const LINE: f64 = 2.4;
 
-/// A closed shape with one colour and a line around it.
-struct Shape {
-    outline: Outline,
-    /// 0xRRGGBB.
-    colour: u32,
-    /// Lines inside of it, which divide it without another colour.
-    creases: Vec<Outline>,
-}
-
-impl Shape {
-    fn new(outline: Outline, colour: u32) -> Self {
-        Self { outline, colour, creases: Vec::new() }
-    }
-}
-
-/// Writes the first `count` drawings, `frames/frame_000.png` and so on, and the same names in `colour/` into `folder`, and makes the folder if
-/// needed. The pictures have `lines` rows and are 16 : 9. There are at most [`COUNT`] drawings.
-///
-/// # Errors
-///
-/// A folder or a file that cannot be written, and a size that no picture can have.
-pub fn write(folder: &Path, lines: u32, count: usize) -> Result<()> {
-    for name in ["frames", "colour"] {
-        let made = folder.join(name);
-        std::fs::create_dir_all(&made).with_context(|| format!("cannot make the folder {made:?}"))?;
-    }
-    DRAWINGS[..count.min(COUNT)].par_iter().enumerate().try_for_each(|(k, pose)| {
-        let shapes = shapes(&Rig::new(pose), k);
-        for (name, coloured) in [("frames", false), ("colour", true)] {
-            let path = folder.join(name).join(format!("frame_{k:03}.png"));
-            let png = draw(&shapes, lines, coloured)?.encode_png()?;
-            std::fs::write(&path, png).with_context(|| format!("cannot write {path:?}"))?;
-        }
-        Ok(())
-    })
-}
-
-/// Draws shapes, the farthest first: in their colours, or white.
-fn draw(shapes: &[Shape], lines: u32, coloured: bool) -> Result<Pixmap> {
-    let width = lines * WIDTH / HEIGHT;
-    let mut pixels = Pixmap::new(width, lines).with_context(|| format!("no picture of {width}x{lines} pixels"))?;
-    let scale = f64::from(lines) / f64::from(HEIGHT);
-    let tone = |colour: u32| rgb(if coloured { colour } else { WHITE });
-    pixels.fill(tone(SKY));
-    let mut canvas = Canvas { pixels };
-    for shape in shapes {
-        let outline = scaled(&shape.outline, scale);
-        canvas.fill(&outline, tone(shape.colour));
-        for crease in &shape.creases {
-            canvas.line(&scaled(crease, scale), LINE * scale, rgb(INK), Some(&outline));
-        }
-        canvas.ink(&outline, rgb(INK));
-    }
-    Ok(canvas.pixels)
-}
-
-fn rgb(colour: u32) -> Color {
-    let [_, r, g, b] = colour.to_be_bytes();
-    Color::from_rgba8(r, g, b, 255)
-}
-
-/// An outline on a picture of another size, with a line all around.
-fn scaled(outline: &Outline, scale: f64) -> Outline {
-    let mut scaled = outline.clone();
-    scaled.points.iter_mut().for_each(|point| *point = scale * *point);
-    scaled.ink.iter_mut().for_each(|width| *width = scale * width.max(LINE));
-    scaled
+/// The first `count` drawings, at most [`COUNT`].
+pub fn drawings(count: usize) -> Vec<Picture> {
+    let poses = DRAWINGS.iter().take(count).enumerate();
+    poses.map(|(k, pose)| Picture { shapes: shapes(&Rig::new(pose), k), paper: SKY, size: [WIDTH, HEIGHT] }).collect()
 }
 
 /// All shapes of drawing `k`, the farthest first.
@@ -215,25 +143,17 @@ fn face(rig: &Rig) -> Vec<Shape> {
     shapes
 }
 
-fn disc(at: Point, radius: f64) -> Outline {
-    ellipse(at, Point::splat(radius))
-}
-
-fn ellipse(at: Point, size: Point) -> Outline {
-    let angle = |k: usize| std::f64::consts::TAU * k as f64 / 12.0;
-    Outline::closed((0..12).map(|k| at + size * Point::from_angle(angle(k))).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::set::Set;
+    use super::super::shapes::{LINES, write};
     use super::super::truth::Truth;
     use super::*;
 
     #[test]
     fn regions_move_appear_and_vanish() {
         let folder = tempfile::tempdir().unwrap();
-        write(folder.path(), LINES, COUNT).unwrap();
+        write(folder.path(), LINES, &drawings(COUNT)).unwrap();
         let set = Set::find(folder.path()).unwrap();
         assert_eq!((set.lines.len(), set.size), (COUNT, (WIDTH as usize, HEIGHT as usize)));
         let drawings: Vec<Truth> = (0..COUNT).map(|k| Truth::of(&set.drawing(k).unwrap())).collect();

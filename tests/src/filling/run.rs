@@ -14,6 +14,7 @@ use rototoon::scene::{Footage, Scene, Silent};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Instant;
+use tempfile::TempDir;
 
 /// The results of a set.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -68,6 +69,14 @@ pub fn measure(folder: &Path, name: &str, sheet: &Path) -> Result<Outcome> {
 
 /// The painted regions of all drawings. The first drawing is frame 0.
 fn filled(set: &Set, clicks: Vec<FillClick>) -> Result<Vec<FilledDrawing>> {
+    let (mut document, folder) = document(set)?;
+    document.set_fills(&[FillClicks { frame: 0, clicks }]);
+    fill(&mut document, folder.path(), None, &FillOptions::default(), &Silent)?;
+    Ok(document.filled()?)
+}
+
+/// A document with the set's line drawings as footage, and the temporary folder with their pictures. The first drawing is frame 0.
+pub(super) fn document(set: &Set) -> Result<(Document, TempDir)> {
     let folder = tempfile::tempdir().context("cannot make a temporary folder")?;
     for (k, path) in set.lines.iter().enumerate() {
         // A document wants numbered pictures; those of a set may have any names.
@@ -76,21 +85,19 @@ fn filled(set: &Set, clicks: Vec<FillClick>) -> Result<Vec<FilledDrawing>> {
     let (width, height) = set.size;
     let last = i32::try_from(set.lines.len() - 1).context("too many drawings")?;
     let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 12.0, width, height };
-    let mut document = Document::new(Scene { footage, parts: Vec::new() });
-    document.set_fills(&[FillClicks { frame: 0, clicks }]);
-    fill(&mut document, folder.path(), None, &FillOptions::default(), &Silent)?;
-    Ok(document.filled()?)
+    Ok((Document::new(Scene { footage, parts: Vec::new() }), folder))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::own;
+    use super::super::shapes::write;
     use super::*;
 
     #[test]
     fn the_drawn_film_is_painted_and_scored() {
         let folder = tempfile::tempdir().unwrap();
-        own::write(folder.path(), 270, 5).unwrap();
+        write(folder.path(), 270, &own::drawings(5)).unwrap();
         let sheet = folder.path().join("sheet.png");
         let found = measure(folder.path(), "drawn", &sheet).unwrap();
         let score = found.score;

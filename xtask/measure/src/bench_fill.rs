@@ -10,7 +10,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use rototoon_tests::filling::run::Outcome;
 use rototoon_tests::filling::set::Set;
-use rototoon_tests::filling::{own, table};
+use rototoon_tests::filling::{own, shapes, table};
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{cargo, command, empty_folder, root, run, target};
 
@@ -30,7 +30,7 @@ pub fn bench_fill(arguments: &Arguments) -> Result<()> {
     if sets.is_empty() {
         sets = vec![("drawn".into(), out.join("drawn"))];
         empty_folder(&sets[0].1)?;
-        own::write(&sets[0].1, own::LINES, own::COUNT)?;
+        shapes::write(&sets[0].1, shapes::LINES, &own::drawings(own::COUNT))?;
     }
     eprintln!("building the optimised benchmark");
     run(cargo().args(["build", "--quiet", "--release", "-p", "rototoon-tests", "--bin", "bench-fill"]))?;
@@ -50,7 +50,7 @@ pub fn bench_fill(arguments: &Arguments) -> Result<()> {
 
 /// Measures a set with the optimised program. `out` is the path of its results without extension.
 fn measured(program: &Path, folder: &Path, out: &Path) -> Result<Outcome> {
-    run(command(program).arg(folder).arg(out))?;
+    run(command(program).arg("run").arg(folder).arg(out))?;
     let name = out.file_name().unwrap_or_default().to_string_lossy();
     let results = out.with_file_name(format!("{name}.json"));
     let text = std::fs::read_to_string(&results).with_context(|| format!("cannot read {results:?}"))?;
