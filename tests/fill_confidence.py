@@ -20,8 +20,6 @@ import numpy as np
 
 BANDS = (0.9, 0.7, 0.5, 0.0)
 RIDGE = 3.0
-# Figures differ, and so do films. The worst of them should not be promised too much.
-CAUTION = 0.0
 
 
 class Table:
@@ -69,7 +67,7 @@ def fit(tables, weight):
 def predict(table, model):
     """The confidence of every region of a table."""
     intercept, slopes = model
-    return 1 / (1 + np.exp(-np.clip(intercept - CAUTION + table.x @ slopes, -30, 30)))
+    return 1 / (1 + np.exp(-np.clip(intercept + table.x @ slopes, -30, 30)))
 
 
 def figures(p, y, w):
@@ -112,7 +110,7 @@ def main():
         report(tables, weight, left_out, given)
         print()
     intercept, slopes = fit(tables, weight)
-    print("intercept", round(intercept - CAUTION, 3), dict(zip(names, slopes.round(3).tolist(), strict=True)))
+    print("intercept", round(intercept, 3), dict(zip(names, slopes.round(3).tolist(), strict=True)))
 
 
 if __name__ == "__main__":

@@ -1,12 +1,16 @@
 //! The benchmark of fills: colours carried from one painted line drawing to all others, beside the same film in colour.
 //!
 //! - [`set`]: films with their colours, from folders
+//! - [`shapes`]: drawings made of shapes
 //! - [`own`]: a film that this package draws
+//! - [`figures`], [`films`]: films of figures that chance makes, for the fit of the confidence
+//! - [`parts`]: films of tracked characters
 //! - [`ink`]: the lines of a drawing, found without the code under test
 //! - [`truth`]: the true regions of a drawing, and the clicks that paint it
 //! - [`paint`]: the painted regions of a document as pixels
 //! - [`score`]: which regions have the right colour
 //! - [`run`]: paints and scores a film
+//! - [`evidence`]: tables from which the confidence is fitted
 //! - [`table`]: the results as Markdown
 //! - [`sheet`]: the drawings with most wrong regions
 //!
