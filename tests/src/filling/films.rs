@@ -205,7 +205,7 @@ mod tests {
         let (one, two) = (all(), all());
         let shown = |film: &Film| format!("{:?}", film.1);
         assert!(one.iter().zip(&two).all(|(a, b)| a.0 == b.0 && shown(a) == shown(b)));
-        let different: BTreeSet<String> = one.iter().map(|film| shown(film)).collect();
+        let different: BTreeSet<String> = one.iter().map(shown).collect();
         assert_eq!(different.len(), FILMS.len() + 2);
         assert_eq!(one.iter().map(|film| film.1.len()).collect::<BTreeSet<_>>(), BTreeSet::from([COUNT, own::COUNT]));
     }
