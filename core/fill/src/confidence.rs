@@ -5,7 +5,7 @@
 //!
 //! | evidence | what it is | what it says |
 //! | --- | --- | --- |
-//! | clear | −ln(1 + 0.001 − (1 − n) s), with s the share of c in all colours that a source gives the region, and n the share in M of regions that the artist left without paint; the mean of the sources, with their largest n | other colours are nearly as good, or a source contradicts, or the artist said nothing of such a region |
+//! | clear | −ln(1 + 0.001 − (1 − n) s), with s the share of c in all colours that a source gives the region, and n the share in M of regions that the artist left without paint; the mean of the sources, with the largest n | other colours are nearly as good, or a source contradicts, or the artist said nothing of such a region |
 //! | around | the logit of the colour's probability in the regions around, weighted by their share of the border | what is around is not known well either, so neighbours could not help |
 //! | crowd | the logarithm of Σ M over all regions of the drawing, for the source's region of colour c that the region is most probably; the mean of the sources | many regions want to be the same one, and most of them are wrong |
 //! | past | 1 − n times the confidence of the source's regions of colour c, weighted by M; the least of the sources | a mistake goes on |
