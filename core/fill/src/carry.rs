@@ -10,7 +10,8 @@ use crate::layout::Layout;
 use crate::leaks::leaks;
 use crate::meet::{Table, meeting};
 use crate::page::{Page, Paint};
-use crate::relax::{Relaxed, relax};
+use crate::relax::relax;
+use crate::said::Said;
 use crate::shifts::Shifts;
 use rototoon_base::geometry::Point;
 use rototoon_lines::displaced;
@@ -23,17 +24,6 @@ pub struct Source<'a> {
     pub paint: &'a Paint,
     /// Whether an artist clicked there.
     pub own: bool,
-}
-
-/// What a source says.
-pub(crate) struct Said<'a> {
-    /// The source's colours.
-    pub paint: &'a Paint,
-    pub relaxed: Relaxed,
-    /// For each region and colour, the sum of u' over the source's regions of this colour.
-    pub colours: Table,
-    /// For each region, the share of regions without paint among those that it may be.
-    pub unpainted: Vec<f32>,
 }
 
 /// The colours of a page from painted ones, of which the last one gives the numbers of regions. Regions that are new

@@ -26,16 +26,10 @@
 //! What is wrong and looks right in every way is given a high confidence: a left leg that all sources take for the right one. A drawing
 //! that is far from all others makes most regions doubtful, the right ones too.
 
-use crate::carry::Said;
+use crate::evidence::Evidence;
 use crate::layout::Layout;
 use crate::page::Paint;
-
-/// Number of pieces of evidence.
-pub const COUNT: usize = 4;
-/// Their names, in the order of [`Evidence`].
-pub const NAMES: [&str; COUNT] = ["clear", "around", "crowd", "past"];
-/// The evidence about a region's colour.
-pub type Evidence = [f64; COUNT];
+use crate::said::Said;
 
 /// The regression's intercept and slopes.
 const INTERCEPT: f64 = -3.25;
@@ -120,6 +114,7 @@ fn logit(share: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::NAMES;
     use crate::meet::Table;
     use crate::regions::Regions;
     use crate::relax::Relaxed;

@@ -16,7 +16,7 @@
 //! - [`relax`]: who is who, by neighbours
 //! - [`page`]: a drawing, and clicks that paint it
 //! - [`carry`](mod@carry): colours and numbers on the next drawing
-//! - [`confidence`]: how probable it is that a colour is right
+//! - [`confidence`]: how probable it is that a colour is right, by the [`evidence`]
 //! - [`outlines`]: painted regions as outlines with holes
 //! - [`thin`]: outlines with fewer points, the same for both sides of a border
 //!
@@ -65,6 +65,7 @@
 
 pub mod carry;
 pub mod confidence;
+pub mod evidence;
 pub mod layout;
 pub mod leaks;
 pub mod meet;
@@ -72,6 +73,7 @@ pub mod outlines;
 pub mod page;
 pub mod regions;
 pub mod relax;
+mod said;
 pub mod shifts;
 pub mod thin;
 

@@ -1,6 +1,6 @@
 //! A drawing that is to be painted: its regions, its lines, and what is known about its colours.
 
-use crate::confidence::Evidence;
+use crate::evidence::Evidence;
 use crate::layout::Layout;
 use crate::meet::Table;
 use crate::regions::Regions;

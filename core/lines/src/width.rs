@@ -209,7 +209,8 @@ mod tests {
         let (darkness, points) = line(0.3, 0.1, (4.0, 0.15), 0.8);
         let radii = measured((&points, false), &[2.0; 29], &darkness, 1.0);
         for (k, radius) in radii.iter().enumerate() {
-            let truth = 4.0 + 0.15 * (k as f64 - 14.0);
+            // At the ends nothing is measured.
+            let truth = 4.0 + 0.15 * (k.clamp(2, 26) as f64 - 14.0);
             assert!((2.0 * radius - truth).abs() < 0.3, "{k}: {} for {truth}", 2.0 * radius);
         }
     }

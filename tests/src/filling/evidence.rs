@@ -7,7 +7,7 @@
 use super::set::{Set, Tone};
 use super::truth::{Region, Truth};
 use anyhow::Result;
-use rototoon::fill::confidence::NAMES;
+use rototoon::fill::evidence::NAMES;
 use rototoon::fill::{Click, Page, Paint, Source, carry};
 use rototoon::geometry::Point;
 use rototoon::lines::Options;

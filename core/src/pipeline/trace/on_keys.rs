@@ -1,7 +1,7 @@
 //! Drawings on key frames, traced for in-betweens.
 //!
 //! Tracing a film follows the same strokes from frame to frame. Key drawings for in-betweens are another matter: nothing is drawn
-//! between them, and their strokes are matched by [`tween`](super::super::tween). So each is traced for itself. Pictures are needed
+//! between them, and their strokes are matched by [`tween`](super::super::tween()). So each is traced for itself. Pictures are needed
 //! on these frames only.
 
 use super::super::{PipelineError, frames, memory};

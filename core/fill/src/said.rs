@@ -1,0 +1,17 @@
+//! What a painted drawing says about the regions of another one.
+
+use crate::meet::Table;
+use crate::page::Paint;
+use crate::relax::Relaxed;
+
+/// What a source says.
+pub(crate) struct Said<'a> {
+    /// The source's colours.
+    pub paint: &'a Paint,
+    /// Who is who.
+    pub relaxed: Relaxed,
+    /// For each region and colour, the sum of u' over the source's regions of this colour.
+    pub colours: Table,
+    /// For each region, the share of regions without paint among those that it may be.
+    pub unpainted: Vec<f32>,
+}
