@@ -17,7 +17,7 @@
 //! **Limits.** What is thinner than a pixel cannot be told from what is paler; it is given [`THINNEST`] or more. A line that gets
 //! paler along its way gets thinner. Below two pixels the peak of a line that runs along the pixels depends on where it lies between
 //! them, and its width may be 0.4 px off. A line that was sketched with several strokes has gaps in it; its width is left as the
-//! skeleton told it.
+//! skeleton told it. Measured in its filled ink, carried lines get too broad: they lie beside its middle, and their reading takes in what is filled next to it.
 
 use crate::centre::{read, smoothed};
 use rototoon_base::geometry::Point;
