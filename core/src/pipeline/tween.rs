@@ -57,7 +57,10 @@ pub fn tween(
     let read = document.drawings().map_err(|e| wrong(&e))?;
     if read.drawings.len() < 2 {
         let found = read.drawings.len();
-        return Err(PipelineError::Tween(format!("drawings: found {found}, expected at least two to draw between")));
+        let advice = "`rototoon trace --drawings` makes them of pictures";
+        return Err(PipelineError::Tween(format!(
+            "drawings: found {found}, expected at least two to draw between; {advice}"
+        )));
     }
     check_extent(&read.drawings)?;
     let keys = read.drawings.iter().enumerate().map(|(k, d)| key(d, k)).collect::<Result<Vec<_>, _>>()?;
