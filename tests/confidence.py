@@ -14,12 +14,12 @@ more than a quarter of its size away in the mean. Its confidence is the mean of 
 import argparse
 import pathlib
 
+import logistic
 import numpy as np
 
 EVIDENCE = ("rival", "look", "cost", "apart", "slide", "edge", "margin")
 CAUTION = 0.8
 HELD = 0.995
-RIDGE = 3.0
 BOUNDS = (0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.001)
 
 
@@ -63,27 +63,17 @@ def weights(tables):
 
 
 def fit(tables, weight):
-    """Intercept and slopes by maximum likelihood, with a ridge on standardised measurements (Newton's method)."""
+    """Intercept and slopes."""
     x = np.vstack([t.x[t.fitted] for t in tables])
     y = np.concatenate([t.good[t.fitted] for t in tables]).astype(float)
     w = np.concatenate([np.full(t.fitted.sum(), weight[t.name]) for t in tables])
-    mean, spread = x.mean(0), x.std(0) + 1e-9
-    z = np.c_[(x - mean) / spread, np.ones(len(x))]
-    b, ridge = np.zeros(z.shape[1]), np.diag([RIDGE] * x.shape[1] + [1e-9])
-    for _ in range(50):
-        p = 1 / (1 + np.exp(-np.clip(z @ b, -30, 30)))
-        step = np.linalg.solve((z * (w * p * (1 - p))[:, None]).T @ z + ridge, z.T @ (w * (y - p)) - ridge @ b)
-        b += step
-        if np.abs(step).max() < 1e-9:
-            break
-    slopes = b[:-1] / spread
-    return b[-1] - slopes @ mean, slopes
+    return logistic.fit(x, y, w)
 
 
 def predict(table, model):
     """The confidence of every point of a table."""
     intercept, slopes = model
-    p = 1 / (1 + np.exp(-np.clip(intercept - CAUTION + table.x @ slopes, -30, 30)))
+    p = logistic.predict(table.x, intercept - CAUTION, slopes)
     return np.where(table.between, p, HELD)
 
 

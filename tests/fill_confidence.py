@@ -16,10 +16,10 @@ true colour. Needs numpy.
 import argparse
 import pathlib
 
+import logistic
 import numpy as np
 
 BANDS = (0.9, 0.7, 0.5, 0.0)
-RIDGE = 3.0
 
 
 class Table:
@@ -48,26 +48,15 @@ def joined(tables, weight, column):
 
 
 def fit(tables, weight):
-    """Intercept and slopes by maximum likelihood, with a ridge on standardised evidence (Newton's method)."""
+    """Intercept and slopes."""
     x, w = joined(tables, weight, lambda t: t.x)
     y = np.concatenate([t.right for t in tables]).astype(float)
-    mean, spread = x.mean(0), x.std(0) + 1e-9
-    z = np.c_[(x - mean) / spread, np.ones(len(x))]
-    b, ridge = np.zeros(z.shape[1]), np.diag([RIDGE] * x.shape[1] + [1e-9])
-    for _ in range(50):
-        p = 1 / (1 + np.exp(-np.clip(z @ b, -30, 30)))
-        step = np.linalg.solve((z * (w * p * (1 - p))[:, None]).T @ z + ridge, z.T @ (w * (y - p)) - ridge @ b)
-        b += step
-        if np.abs(step).max() < 1e-9:
-            break
-    slopes = b[:-1] / spread
-    return b[-1] - slopes @ mean, slopes
+    return logistic.fit(x, y, w)
 
 
 def predict(table, model):
     """The confidence of every region of a table."""
-    intercept, slopes = model
-    return 1 / (1 + np.exp(-np.clip(intercept + table.x @ slopes, -30, 30)))
+    return logistic.predict(table.x, *model)
 
 
 def figures(p, y, w):

@@ -46,16 +46,9 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::super::DrawnStroke;
+    use super::super::tests::document;
     use super::*;
     use rototoon_base::geometry::Point;
-
-    fn document(fields: &str) -> Document {
-        let text = format!(
-            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
-            "height": 48}}, "parts": [], {fields}}}"#
-        );
-        Document::parse(&text, "a.json").unwrap()
-    }
 
     fn drawing(frame: i32) -> Drawing {
         let points = vec![Point::new(1.0 / 3.0, 2.0), Point::new(5.0, 2.0)];

@@ -85,15 +85,13 @@ fn between(frame: FrameNumber, list: &[Value], place: &str) -> Result<DrawnBetwe
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::document as with;
     use super::*;
     use rototoon_base::geometry::Point;
 
+    /// A document with these in-betweens.
     fn document(in_betweens: &str) -> Document {
-        let text = format!(
-            r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
-            "height": 48}}, "parts": [], "in_betweens": {in_betweens}}}"#
-        );
-        Document::parse(&text, "a.json").unwrap()
+        with(&format!(r#""in_betweens": {in_betweens}"#))
     }
 
     #[test]

@@ -255,7 +255,8 @@ fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<Stri
 mod tests {
     use super::*;
 
-    fn document(fields: &str) -> Document {
+    /// A document with these fields.
+    pub(super) fn document(fields: &str) -> Document {
         let text = format!(
             r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": 9, "fps": 24, "width": 64,
             "height": 48}}, "parts": [], {fields}}}"#
