@@ -61,7 +61,12 @@ impl Drawing {
     /// The strokes of the drawing.
     pub fn strokes(&self) -> Vec<Stroke> {
         let kept = self.lines();
-        kept.par_iter().map(|line| finish::finished(line, self)).collect()
+        kept.par_iter().map(|line| self.finished(line)).collect()
+    }
+
+    /// The stroke of a line on this drawing.
+    pub(crate) fn finished(&self, line: &Walked) -> Stroke {
+        finish::finished(line, &self.picture, self.unit, self.darkness.as_ref())
     }
 
     /// The strokes before they are fitted.

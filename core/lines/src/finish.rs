@@ -1,6 +1,5 @@
 //! Strokes as they are handed out: fitted, with few even points, widths and colour.
 
-use crate::drawing::Drawing;
 use crate::stroke::Stroke;
 use crate::strokes::Walked;
 use crate::width;
@@ -14,15 +13,15 @@ const LEAST_TOLERANCE: f64 = 0.45;
 /// Distance between points in pixels, at 540 lines.
 const SPACING: f64 = 2.0;
 
-/// The stroke of a walked line on a drawing.
-pub fn finished(walked: &Walked, drawing: &Drawing) -> Stroke {
-    let picture = &*drawing.picture;
-    let points = curve(&walked.points, walked.closed, drawing.unit);
+/// The stroke of a walked line. `unit` is the size of a pixel of 540 lines. `darkness` is that of each pixel and of the darkest ink; without it
+/// the line keeps the radii with which it was walked.
+pub fn finished(walked: &Walked, picture: &Raster<Colour>, unit: f64, darkness: Option<&(Raster<f32>, f32)>) -> Stroke {
+    let points = curve(&walked.points, walked.closed, unit);
     if walked.fill {
         let colour = colour(&inside(&points, picture), picture);
         return Stroke { widths: Vec::new(), colour, points, closed: true, fill: true };
     }
-    let widths = match &drawing.darkness {
+    let widths = match darkness {
         Some((darkness, darkest)) => {
             let line = (&walked.points[..], walked.closed);
             let radii = width::measured(line, &walked.radii, darkness, f64::from(*darkest));

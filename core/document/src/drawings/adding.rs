@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 impl Document {
-    /// Adds drawings. Their spacing, corners and pegs are not written: a new drawing has none.
+    /// Adds drawings. Their spacing, corners and pegs are not written: a new drawing has none. In-betweens of an earlier run go from
+    /// their frames.
     ///
     /// # Errors
     ///
@@ -39,6 +40,12 @@ impl Document {
             all.insert(frame, json!({"frame": frame, "strokes": strokes}));
         }
         self.set_other_field("drawings", lines(all.into_values()));
+        // What was generated on a frame does not hide the drawing that comes there.
+        if self.other_field("in_betweens").is_some() {
+            let on = |frame: &Value| new.iter().any(|drawing| frame.as_i64() == Some(i64::from(drawing.frame)));
+            let kept = self.other_list("in_betweens")?.into_iter().filter(|own| !on(&own["frame"]));
+            self.set_other_field("in_betweens", lines(kept));
+        }
         Ok(())
     }
 }
@@ -72,6 +79,15 @@ mod tests {
         assert_eq!(read.iter().map(|own| own.frame).collect::<Vec<_>>(), [-3, 0, 4, 8, 12]);
         assert_eq!((&read[2].strokes[0].widths[..], read[2].strokes[0].points[0].x), (&[2.0, 0.3333][..], 0.3333));
         assert!(text.contains(r#""mine":7"#) && text.contains("1.23456") && text.contains("linear"), "{text}");
+    }
+
+    #[test]
+    fn an_in_between_makes_room_for_a_drawing() {
+        let mut doc = document(&format!(
+            r#"{OWN}, "in_betweens": [{{"frame": 4, "strokes": []}}, {{"frame": 5, "strokes": []}}]"#
+        ));
+        doc.add_drawings(&[drawing(4)]).unwrap();
+        assert_eq!(doc.in_betweens().unwrap().iter().map(|own| own.frame).collect::<Vec<_>>(), [5]);
     }
 
     #[test]

@@ -24,7 +24,6 @@ pub use identify::identify;
 pub use register::{Displaced, displaced};
 
 use crate::drawing::Drawing;
-use crate::finish;
 use crate::stroke::{Stroke, Tracked};
 use crate::strokes::Walked;
 use confidence::Signs;
@@ -48,7 +47,7 @@ pub fn carry(from: &Drawing, strokes: &[Tracked], to: &Drawing, next: &mut usize
     let (mut out, mut rests) = carried(from, strokes, to);
     rests.retain(|rest| polyline::length(&rest.points, rest.closed) >= NEW * to.unit + to.width);
     for rest in rests {
-        out.push(Tracked::sure(*next, finish::finished(&rest, to)));
+        out.push(Tracked::sure(*next, to.finished(&rest)));
         *next += 1;
     }
     out
@@ -167,5 +166,5 @@ fn finished(before: &Tracked, points: &[Point], closed: bool, to: &Drawing) -> T
     let radius = 0.5 * if widths.is_empty() { to.width } else { widths.iter().sum::<f64>() / widths.len() as f64 };
     let fill = before.stroke.fill && closed;
     let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2], fill };
-    Tracked::sure(before.track, finish::finished(&walked, to))
+    Tracked::sure(before.track, to.finished(&walked))
 }
