@@ -6,19 +6,20 @@
 //! - **Floats** (OpenEXR, float TIFF) are light. They are encoded and clamped to 0 to 1. NaN becomes black.
 //! - **Transparent pixels** are blended with a mid grey, sRGB-encoded 0.5. Ink may be black or white. On white or black
 //!   paper one of them would vanish; on grey both keep their edges. Integers are blended as encoded values, as painting
-//!   programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light.
+//!   programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light. TIFF says whether
+//!   its colours are multiplied by alpha (`tags`).
 //! - **Animations** (PNG, WebP) give their first frame.
 //!
 //! A file that is cut anywhere is an error, unless all pixels are in what is left ([`super::open`]).
 //!
-//! Limits: colour profiles, gamma chunks and the orientation noted by cameras are ignored. The decoder refuses TIFF
-//! with a palette and OpenEXR without R, G and B channels, with its own reason. The pixels of a picture may use at most
+//! Limits: colour profiles, gamma chunks and the orientation noted by cameras are ignored. TIFF
+//! with a palette is refused, and OpenEXR with several channels but no R, G and B (`layered`). The pixels of a picture may use at most
 //! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
 use super::error::DecodeError;
-use super::open::{check_size, open};
+use super::open::{check_size, decoder, open};
 use super::stored::Stored;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat};
+use image::{ColorType, DynamicImage, ImageDecoder};
 use rototoon_base::scene::{Colour, Raster};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -33,7 +34,7 @@ pub const BACKDROP: f32 = 0.5;
 /// A file that does not exist or cannot be read as a picture.
 pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
     guarded(|| {
-        let (width, height) = open(path, false)?.into_dimensions()?;
+        let (width, height) = decoder(open(path, false)?)?.0.dimensions();
         Ok((width as usize, height as usize))
     })
 }
@@ -67,7 +68,7 @@ pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Ras
 /// As for [`probe`].
 pub fn kept_size(path: &Path) -> Result<u64, DecodeError> {
     guarded(|| {
-        let decoder = open(path, false)?.into_decoder()?;
+        let (decoder, _) = decoder(open(path, false)?)?;
         let float = matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
         Ok(decoder.total_bytes() / if float { 2 } else { 1 })
     })
@@ -84,9 +85,7 @@ pub(super) fn stored(
     pixel: usize,
 ) -> Result<(Stored, (usize, usize)), DecodeError> {
     guarded(|| {
-        let reader = open(path, true)?;
-        let multiplied = reader.format() == Some(ImageFormat::OpenExr);
-        let decoder = reader.into_decoder()?;
+        let (decoder, multiplied) = decoder(open(path, true)?)?;
         let (width, height) = decoder.dimensions();
         let (width, height) = (width as usize, height as usize);
         if expected.is_some_and(|size| size != (width, height)) {
@@ -112,7 +111,7 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, Decode
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ExtendedColorType, ImageBuffer, Luma, LumaA, Rgb, Rgba};
+    use image::{ExtendedColorType, ImageBuffer, ImageFormat, Luma, LumaA, Rgb, Rgba};
     use rototoon_image::colour::{decode as to_light, encode};
     use std::path::PathBuf;
     use tempfile::TempDir;

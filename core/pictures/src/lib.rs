@@ -14,10 +14,12 @@ mod error;
 #[cfg(test)]
 mod hostile_files;
 mod jpeg;
+mod layered;
 mod open;
 pub mod sequence;
 pub mod store;
 mod stored;
+mod tags;
 mod tiles;
 
 pub use decode::{decode, probe};

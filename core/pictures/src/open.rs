@@ -4,12 +4,13 @@
 //! middle. All of that is an error here, before memory is taken.
 
 use super::error::DecodeError;
-use super::{jpeg, tiles};
+use super::layered::{self, Layered};
+use super::{jpeg, tags, tiles};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rototoon_base::file;
 use rototoon_base::memory::{self, Bytes};
 use std::fs::{self, File};
-use std::io::{BufRead, BufReader, Cursor, Seek};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek};
 use std::path::Path;
 
 /// Largest number of bytes that the pixels of a picture may take, as decoded and as converted together.
@@ -37,6 +38,9 @@ pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     let length = file::length(path)?;
     let file: Box<dyn Source> = Box::new(BufReader::new(file::Repeating(File::open(path)?)));
     let mut reader = ImageReader::new(file).with_guessed_format()?;
+    if reader.format().is_none() {
+        reader = big_tiff(reader)?;
+    }
     let Some(format) = reader.format() else {
         return Err(DecodeError::Unreadable("not a PNG, JPEG, TIFF, BMP, WebP or OpenEXR picture".into()));
     };
@@ -55,10 +59,46 @@ pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
         file.rewind()?;
         reader = ImageReader::with_format(file, format);
     }
+    Ok(limited(reader))
+}
+
+/// A file whose first bytes are those of BigTIFF, which has places for more than 4 GB, as TIFF. Any other file as it is.
+fn big_tiff(reader: Reader) -> Result<Reader, DecodeError> {
+    let (mut file, mut start) = (reader.into_inner(), Vec::new());
+    file.by_ref().take(4).read_to_end(&mut start)?;
+    file.rewind()?;
+    Ok(match start.as_slice() {
+        b"II+\0" | b"MM\0+" => ImageReader::with_format(file, ImageFormat::Tiff),
+        _ => ImageReader::new(file),
+    })
+}
+
+/// What decodes an opened file, and whether its colours are multiplied by alpha.
+///
+/// # Errors
+///
+/// A header that cannot be read, and OpenEXR channels of which none is a picture.
+pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeError> {
+    let (format, mut file) = match reader.format() {
+        Some(format @ (ImageFormat::Tiff | ImageFormat::OpenExr)) => (format, reader.into_inner()),
+        _ => return Ok((Box::new(reader.into_decoder()?), false)),
+    };
+    let is_exr = format == ImageFormat::OpenExr;
+    let multiplied = is_exr || tags::multiplied(&mut file);
+    let layered = is_exr && !tiles::headers(&mut file)?.iter().any(layered::is_plain);
+    file.rewind()?;
+    if layered {
+        return Ok((Box::new(Layered::new(file)?), multiplied));
+    }
+    Ok((Box::new(limited(ImageReader::with_format(file, format)).into_decoder()?), multiplied))
+}
+
+/// A reader with the limits of its format.
+fn limited(mut reader: Reader) -> Reader {
     let mut limits = Limits::default();
-    limits.max_alloc = Some(if format == ImageFormat::Png { MOST_EXTRA_BYTES } else { MOST_BYTES });
+    limits.max_alloc = Some(if reader.format() == Some(ImageFormat::Png) { MOST_EXTRA_BYTES } else { MOST_BYTES });
     reader.limits(limits);
-    Ok(reader)
+    reader
 }
 
 /// A JPEG file in memory, where its decoder would copy it anyway.

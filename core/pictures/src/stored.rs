@@ -94,14 +94,14 @@ fn short<const N: usize>(values: &[f32]) -> Option<Vec<[f16; N]>> {
 
 fn colours(picture: &DynamicImage, multiplied: bool) -> Vec<Colour> {
     match picture {
-        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), byte),
-        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), byte),
-        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), byte),
-        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), byte),
-        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), word),
-        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), word),
-        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), word),
-        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), word),
+        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), multiplied, byte),
+        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), multiplied, byte),
+        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), multiplied, byte),
+        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), multiplied, byte),
+        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), multiplied, word),
+        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), multiplied, word),
+        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), multiplied, word),
+        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), multiplied, word),
         DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| p.0.map(encoded)).collect(),
         other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied)).collect(),
     }
@@ -112,8 +112,13 @@ fn layer(pixel: [f32; 4], light: bool, multiplied: bool) -> [f32; 4] {
     let number = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(f32::MIN, f32::MAX) };
     let [r, g, b, alpha] = pixel.map(number);
     let alpha = alpha.clamp(0.0, 1.0);
-    let own = if multiplied { 1.0 } else { alpha };
-    let [r, g, b] = [r, g, b].map(|v| own * if light { v } else { to_light(v) });
+    let straight = |v: f32| if multiplied && alpha > 0.0 { (v / alpha).min(1.0) } else { v };
+    let [r, g, b] = [r, g, b].map(|v| match (light, multiplied) {
+        (true, true) => v,
+        (true, false) => alpha * v,
+        // Whole numbers are multiplied as they are encoded.
+        (false, _) => alpha * to_light(straight(v)),
+    });
     [r, g, b, alpha]
 }
 
@@ -125,9 +130,13 @@ fn word(v: u16) -> f32 {
     v as f32 / 65535.0
 }
 
-/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha.
-fn whole<const N: usize, V: Copy>(values: &[V], unit: impl Fn(V) -> f32) -> Vec<Colour> {
-    let over = |v: f32, alpha: f32| BACKDROP + alpha * (v - BACKDROP);
+/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha. `multiplied` says whether colours are
+/// multiplied by alpha.
+fn whole<const N: usize, V: Copy>(values: &[V], multiplied: bool, unit: impl Fn(V) -> f32) -> Vec<Colour> {
+    let over = |v: f32, alpha: f32| match multiplied {
+        true => BACKDROP + v.min(alpha) - alpha * BACKDROP,
+        false => BACKDROP + alpha * (v - BACKDROP),
+    };
     let (pixels, _) = values.as_chunks::<N>();
     let colour = |pixel: &[V; N]| {
         let v = pixel.map(&unit);

@@ -4,7 +4,7 @@
 //! bytes could ask for any amount that way.
 
 use super::error::DecodeError;
-use exr::meta::{BlockDescription, MetaData, header::Header};
+use exr::meta::{BlockDescription, Headers, MetaData, header::Header};
 use rototoon_base::memory::Bytes;
 use std::io::Read;
 
@@ -17,8 +17,17 @@ const MOST_TILE_BYTES: u128 = 64 << 20;
 ///
 /// A header that cannot be read, and tiles that need more memory than the picture does and than [`MOST_TILE_BYTES`].
 pub fn check(file: &mut impl Read) -> Result<(), DecodeError> {
+    headers(file)?.iter().try_for_each(check_part)
+}
+
+/// The headers of the parts of a file.
+///
+/// # Errors
+///
+/// A header that cannot be read.
+pub fn headers(file: &mut impl Read) -> Result<Headers, DecodeError> {
     let meta = MetaData::read_from_buffered(file, false).map_err(|e| DecodeError::Unreadable(e.to_string()))?;
-    meta.headers.iter().try_for_each(check_part)
+    Ok(meta.headers)
 }
 
 fn check_part(header: &Header) -> Result<(), DecodeError> {

@@ -1,0 +1,81 @@
+//! Whether the colours of a TIFF file are multiplied by alpha.
+//!
+//! The tag `ExtraSamples` says it: 1 is alpha that the colours are multiplied by, 2 is alpha that they are not. Programs that composite write 1, as
+//! OpenImageIO does without being asked; painting programs write 2. With any other value the fourth channel
+//! is not alpha, and the decoder leaves it out.
+
+use std::io::{Read, Seek};
+use tiff::decoder::Decoder;
+use tiff::tags::Tag;
+
+/// The value of `ExtraSamples` for colours that are multiplied by alpha.
+const ASSOCIATED: u16 = 1;
+
+/// Whether a file says that its colours are multiplied by alpha. A file that cannot be read does not: its decoder tells why.
+pub fn multiplied(file: &mut (impl Read + Seek)) -> bool {
+    let samples = Decoder::new(file).and_then(|mut file| file.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples));
+    samples.ok().flatten().is_some_and(|samples| samples.first() == Some(&ASSOCIATED))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::decode::{decode, decode_layer, probe};
+    use rototoon_image::colour::decode as to_light;
+    use std::fs::File;
+    use std::path::Path;
+    use tiff::encoder::colortype::{ColorType, RGB8, RGBA8, RGBA16, RGBA32Float};
+    use tiff::encoder::{TiffEncoder, TiffValue};
+    use tiff::tags::Tag;
+
+    /// A file of one pixel.
+    fn write<C: ColorType>(path: &Path, pixel: [C::Inner; 4], samples: u16)
+    where
+        [C::Inner]: TiffValue,
+    {
+        let mut file = TiffEncoder::new(File::create(path).unwrap()).unwrap();
+        let mut image = file.new_image::<C>(1, 1).unwrap();
+        image.encoder().write_tag(Tag::ExtraSamples, &[samples][..]).unwrap();
+        image.write_data(&pixel).unwrap();
+    }
+
+    #[test]
+    fn colours_that_are_multiplied_by_alpha_are_told_by_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tif");
+        // An alpha of 0.4, and a straight red of 0.5.
+        let want = [0.4 * to_light(0.5), 0.0, 0.4, 0.4];
+        let over = [0.5, 0.3, 0.7];
+        let is = |what: &str| {
+            let (layer, colour) =
+                (decode_layer(&path, None).unwrap().get(0, 0), decode(&path, None).unwrap().get(0, 0));
+            assert!(layer.iter().zip(want).all(|(a, b)| (a - b).abs() < 1e-3), "{what}: {layer:?} {want:?}");
+            assert!(colour.iter().zip(over).all(|(a, b)| (a - b).abs() < 1e-3), "{what}: {colour:?} {over:?}");
+        };
+        write::<RGBA8>(&path, [51, 0, 102, 102], 1);
+        is("multiplied");
+        write::<RGBA16>(&path, [13107, 0, 26214, 26214], 1);
+        is("multiplied, 16 bits");
+        write::<RGBA16>(&path, [32768, 0, 65535, 26214], 2);
+        is("straight");
+        // Of a fourth channel nobody says what it is.
+        write::<RGBA8>(&path, [51, 0, 102, 102], 0);
+        assert_eq!(decode_layer(&path, None).unwrap().get(0, 0), [to_light(0.2), 0.0, to_light(0.4), 1.0]);
+        write::<RGBA32Float>(&path, [0.2, 0.0, 0.4, 0.4], 1);
+        assert_eq!(decode_layer(&path, None).unwrap().get(0, 0), [0.2, 0.0, 0.4, 0.4]);
+        write::<RGBA32Float>(&path, [0.5, 0.0, 1.0, 0.4], 2);
+        assert_eq!(decode_layer(&path, None).unwrap().get(0, 0), [0.2, 0.0, 0.4, 0.4]);
+        // Colours that are brighter than their alpha allows.
+        write::<RGBA8>(&path, [255, 0, 0, 51], 1);
+        assert_eq!(decode_layer(&path, None).unwrap().get(0, 0), [0.2, 0.0, 0.0, 0.2]);
+    }
+
+    #[test]
+    fn big_tiff_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tif");
+        let mut file = TiffEncoder::new_big(File::create(&path).unwrap()).unwrap();
+        file.write_image::<RGB8>(2, 1, &[255, 0, 51, 0, 255, 0]).unwrap();
+        assert_eq!(probe(&path), Ok((2, 1)));
+        assert_eq!(decode(&path, None).unwrap().data(), [[1.0, 0.0, 0.2], [0.0, 1.0, 0.0]]);
+    }
+}
