@@ -15,6 +15,7 @@ mod picture;
 mod render;
 mod report;
 mod reshape;
+mod shapeless;
 mod sheet;
 pub mod spans;
 mod strokes;
@@ -34,6 +35,7 @@ pub use picture::{Picture, RenderJob};
 pub use render::render;
 pub use report::{Counts, PartReport, Report, Weakest};
 pub use reshape::{Given, ReshapeJob, Reshaped, reshape};
+pub use shapeless::nothing_for;
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::{TraceMemory, trace, trace_drawings};
@@ -232,7 +234,7 @@ pub fn export_silhouette(document: &Document, spacing: f64) -> String {
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
 /// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
-/// such a feather: `extension`, in small letters, names the form.
+/// such a feather, and some lack characters of names: `extension`, in small letters, names the form.
 pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String> {
     let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
     let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
@@ -242,7 +244,10 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
     let names: Vec<String> = other.map(|part| format!("{:?}", part.name)).collect();
     let falloff = (!names.is_empty())
         .then(|| format!("the file has no such falloff, or only its rate, as that of {}", names.join(", ")));
-    let told: Vec<String> = feather.into_iter().chain(falloff).collect();
+    let renamed = export::renamed(&document.scene, extension);
+    let renamed: Vec<String> = renamed.into_iter().map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
+    let names = (!renamed.is_empty()).then(|| format!("the file cannot have some names: {}", renamed.join(", ")));
+    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
 

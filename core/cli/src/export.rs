@@ -30,15 +30,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             to.display()
         )));
     }
-    // The other formats know parts only.
-    let takes_drawn = ["svg", "json"].contains(&extension.as_str());
-    let document = if takes_drawn { project::load_either(from)? } else { project::load(from)? };
+    let document = project::load_either(from)?;
     let inputs = project::inputs(&document, from);
     if extension == "json" {
         inputs.check(to)?;
         return project::save(document, from, to);
     }
     inputs.file(from).check(to)?;
+    if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
+        return Err(Failure::Other(format!("{}: {nothing}", from.display())));
+    }
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
     let spacing = arguments::number(given, "spacing");

@@ -175,3 +175,21 @@ fn in_betweens_and_drawings_are_drawn_and_exported() {
         assert!(text.contains(&format!("id=\"{id}\"")), "nothing says that these are one stroke: {id}: {text}");
     }
 }
+
+#[test]
+fn forms_without_strokes_are_not_written_of_drawings() {
+    let (folder, path) = project(drawn());
+    let export = |name: &str| {
+        let to = folder.path().join(name);
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(&path).arg("-o").arg(&to).output().unwrap();
+        (output.status.code(), told(&output), to.exists())
+    };
+    for name in ["a.nk", "a.ntp", "a.py", "a.jsx", "a.fxs"] {
+        let (status, said, written) = export(name);
+        assert!(status == Some(1) && !written && said.lines().count() == 1, "{name}: {said}");
+        let what = "The document has strokes on 1 frame and painted regions on 1 frame; .svg and .json take them";
+        assert!(said.contains("project.json: found no contour of a part") && said.contains(what), "{said}");
+    }
+    assert_eq!((export("a.svg").0, export("a.json").0), (Some(0), Some(0)));
+}

@@ -7,12 +7,14 @@
 //! - [`natron_project`](mod@natron_project): a project of Natron with a Roto node
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
+//! - `names`: names of parts in the characters of a format
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - `presence`: when a part is there
 //! - [`xml`]: escaping of text for XML
 
 pub mod after_effects;
 pub mod archive;
+mod names;
 pub mod natron;
 pub mod natron_project;
 pub mod nuke;
@@ -23,6 +25,7 @@ pub mod svg;
 pub mod xml;
 
 pub use after_effects::after_effects;
+pub use names::renamed;
 pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;

@@ -24,9 +24,11 @@
 
 use super::archive::{Archive, Class};
 use super::coordinate;
+use super::names::written;
 use super::natron::MOST_FALLOFF;
 use super::outlines::Outlines;
 use super::presence::presence;
+use super::xml::plain;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
 
@@ -139,6 +141,7 @@ fn node(out: &mut Archive, scene: &Scene, spacing: f64) {
 fn context(out: &mut Archive, scene: &Scene, spacing: f64) {
     let footage = &scene.footage;
     let contours = |index: usize| Outlines::new(&scene.parts[index], spacing).within(footage.first, footage.last);
+    let names = written(scene, plain);
     let farthest_first = super::nearest_first(scene).into_iter().rev();
     let shapes: Vec<_> = farthest_first.map(|index| (index, contours(index))).filter(|(_, k)| !k.is_empty()).collect();
     out.object("BaseLayer", LAYER, |out| {
@@ -151,7 +154,8 @@ fn context(out: &mut Archive, scene: &Scene, spacing: f64) {
             let script_name = format!("Bezier{}", number + 1);
             out.object("Item", BEZIER, |out| {
                 out.object("RotoDrawableItemSerialization", DRAWABLE, |out| {
-                    drawable(out, &script_name, &scene.parts[*index], keys, footage, colour);
+                    let both = (script_name.as_str(), names[*index].as_str());
+                    drawable(out, both, &scene.parts[*index], keys, footage, colour);
                 });
                 points(out, keys, footage.height as f64);
                 out.flag("Closed", scene.parts[*index].closed);
@@ -179,13 +183,13 @@ fn item(out: &mut Archive, name: &str, label: &str, layer: &str) {
 /// What curves share with paint strokes: names, parameters, and the colour in which the viewer shows it.
 fn drawable(
     out: &mut Archive,
-    name: &str,
+    (name, label): (&str, &str),
     part: &Part,
     keys: &[(FrameNumber, Vec<Point>)],
     footage: &Footage,
     [red, green, blue]: [f64; 3],
 ) {
-    item(out, name, &part.name, "Layer1");
+    item(out, name, label, "Layer1");
     let active = activity(part, keys, footage);
     let rate = part.falloff.rate.min(MOST_FALLOFF);
     let count = if active.is_empty() { 1 } else { 3 };

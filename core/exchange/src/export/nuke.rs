@@ -11,6 +11,7 @@
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format" (version 1.2 of the curves, since Nuke 7). As in
 //! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
 
+use super::names::written;
 use super::outlines::Outlines;
 use super::presence::presence;
 use rototoon_base::geometry::Point;
@@ -35,19 +36,19 @@ pub fn nuke(scene: &Scene, spacing: f64) -> String {
         out,
         " curves {{{{{{v {version}}}\n  {{f 0}}\n  {{n\n   {{layer Root\n    {{f 0}}\n    {{t {x} {y}}}\n    {{a}}"
     );
+    let names = written(scene, plain);
     for index in super::nearest_first(scene) {
-        shape(&mut out, scene, index, spacing);
+        shape(&mut out, scene, (index, &names[index]), spacing);
     }
     out + "}}}}\n name Rototoon\n}\n"
 }
 
-fn shape(out: &mut String, scene: &Scene, index: usize, spacing: f64) {
+fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing: f64) {
     let part = &scene.parts[index];
     let keys = Outlines::new(part, spacing).within(scene.footage.first, scene.footage.last);
     let (Some((first, start)), Some((last, _))) = (keys.first(), keys.last()) else { return };
     let flag = if part.closed { RELATIVE_HANDLES } else { RELATIVE_HANDLES | OPEN };
-    let _ =
-        write!(out, "\n    {{curvegroup {} 512 bezier\n     {{{{cc\n       {{f {flag}}}\n       {{p", name(&part.name));
+    let _ = write!(out, "\n    {{curvegroup \"{name}\" 512 bezier\n     {{{{cc\n       {{f {flag}}}\n       {{p");
     let height = scene.footage.height as f64;
     for point in 0..start.len() {
         let channel =
@@ -107,10 +108,10 @@ fn number(value: f64) -> String {
     if bits == 0 { "0".to_owned() } else { format!("x{bits:x}") }
 }
 
-/// A name in quotes. Characters that end or escape it become underscores.
-fn name(name: &str) -> String {
+/// A name as it may stand in quotes: characters that would end or escape it become underscores.
+pub(super) fn plain(name: &str) -> String {
     let plain = |c: char| if "\"'\\{}[]$".contains(c) || c.is_control() { '_' } else { c };
-    format!("\"{}\"", name.chars().map(plain).collect::<String>())
+    name.chars().map(plain).collect()
 }
 
 #[cfg(test)]

@@ -11,11 +11,12 @@
 //! Source: the makers have not published the format. This module writes what M. Borgo's exporter for Nuke writes;
 //! Silhouette reads that.
 
+use super::names::written;
 use super::outlines::Outlines;
 use super::presence::presence;
-use super::xml::escaped;
+use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
+use rototoon_base::scene::{Footage, FrameNumber, Scene};
 use std::fmt::Write;
 
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
@@ -35,13 +36,15 @@ pub fn silhouette(scene: &Scene, spacing: f64) -> String {
     );
     out += " <Layer type=\"Layer\" label=\"Rototoon\" expanded=\"True\">\n  <Properties>\n";
     out += "   <Property id=\"objects\" constant=\"True\" expanded=\"True\">\n";
+    let names = written(scene, plain);
     for index in super::nearest_first(scene) {
-        shape(&mut out, scene, &scene.parts[index], index, spacing);
+        shape(&mut out, scene, (index, &names[index]), spacing);
     }
     out + "   </Property>\n  </Properties>\n </Layer>\n</Silhouette>\n"
 }
 
-fn shape(out: &mut String, scene: &Scene, part: &Part, index: usize, spacing: f64) {
+fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing: f64) {
+    let part = &scene.parts[index];
     let keys = Outlines::new(part, spacing).within(scene.footage.first, scene.footage.last);
     if keys.is_empty() {
         return;
@@ -50,7 +53,7 @@ fn shape(out: &mut String, scene: &Scene, part: &Part, index: usize, spacing: f6
     let _ = writeln!(
         out,
         "    <Object type=\"Shape\" label=\"{}\" shape_type=\"Bezier\" hidden=\"False\" locked=\"False\">\n     <Properties>",
-        escaped(&part.name)
+        escaped(name)
     );
     *out += &opacity(&presence(part, &keys, &scene.footage), &scene.footage);
     for (id, value) in [
@@ -98,6 +101,7 @@ fn placed(p: Point, scene: &Scene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::scene::Part;
     use std::collections::BTreeMap;
 
     #[test]

@@ -2,11 +2,13 @@
 //!
 //! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage. The animation loops, and
 //! browsers play it directly. SMIL can interpolate only paths with the same number of points, so every frame gets the
-//! same number ([`super::outlines`]). A part is hidden on frames without a contour. Parts are drawn in the order of
+//! same number ([`super::outlines`]). A part is hidden on frames without a contour; one that
+//! has nothing but keys says so in an attribute, since an import would take it for absent between them. Parts are drawn in the order of
 //! depth, far ones first.
 
+use super::names::written;
 use super::outlines::Outlines;
-use super::xml::escaped;
+use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::resample;
 use rototoon_base::scene::palette;
@@ -53,6 +55,9 @@ impl Default for SvgOptions {
 const LINE_WIDTH: f64 = 2.0;
 /// Opacity of fills, low enough to show what is behind a part.
 const FILL_OPACITY: f64 = 0.35;
+
+/// The attribute of a part that has nothing but keys. It is drawn on these frames only, but it is not hidden on others.
+const KEYS_ONLY: &str = "data-keys=\"only\"";
 
 /// A stroke on several frames.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -107,8 +112,9 @@ pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], o
     }
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
+    let names = written(scene, plain);
     for index in order {
-        part(&mut out, scene, index, options);
+        part(&mut out, scene, (index, &names[index]), options);
     }
     for drawn in strokes {
         stroke(&mut out, scene, drawn, options);
@@ -116,14 +122,16 @@ pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], o
     out + "</g>\n</svg>\n"
 }
 
-fn part(out: &mut String, scene: &Scene, index: usize, options: &SvgOptions) {
+fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: &SvgOptions) {
     let part = &scene.parts[index];
     let outlines = Outlines::new(part, options.spacing);
     let shape = |frame: FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
     let colour = palette::hex(part.shown_colour(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
-    let style = format!("id=\"part-{index}\" fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
-    path(out, scene, &style, (&escaped(&part.name), &BTreeMap::new()), options.motion, shape);
+    let keys = if part.tracks.is_empty() && part.keys.len() > 1 { format!(" {KEYS_ONLY}") } else { String::new() };
+    let style =
+        format!("id=\"part-{index}\"{keys} fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
+    path(out, scene, &style, (&escaped(name), &BTreeMap::new()), options.motion, shape);
 }
 
 fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {

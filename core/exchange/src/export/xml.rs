@@ -9,10 +9,20 @@ pub fn escaped(text: &str) -> String {
             '<' => out += "&lt;",
             '>' => out += "&gt;",
             '"' => out += "&quot;",
-            '\t' | '\n' | '\r' => out.push(c),
-            c if c < ' ' || c == '\u{fffe}' || c == '\u{ffff}' => {}
-            c => out.push(c),
+            // As they are, a reader makes spaces of them in attributes.
+            '\t' | '\n' | '\r' => out += &format!("&#{};", u32::from(c)),
+            c if is_allowed(c) => out.push(c),
+            _ => {}
         }
     }
     out
+}
+
+/// Text without the characters that XML does not allow.
+pub(super) fn plain(text: &str) -> String {
+    text.chars().filter(|c| is_allowed(*c)).collect()
+}
+
+fn is_allowed(c: char) -> bool {
+    "\t\n\r".contains(c) || (c >= ' ' && c != '\u{fffe}' && c != '\u{ffff}')
 }

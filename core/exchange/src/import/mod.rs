@@ -9,11 +9,13 @@
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
+//! - `hidden`: frames on which a shape is not shown
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
 
 pub mod bvh;
 mod channel;
+mod hidden;
 mod limits;
 mod names;
 pub mod natron;
@@ -29,7 +31,7 @@ mod svg_animation;
 pub use problem::{ImportError, Place};
 
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Falloff, FrameNumber, Part, Scene};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use std::collections::BTreeMap;
 
 /// A shape as the contour of a part. Every key has the same number of points.
@@ -41,8 +43,25 @@ pub struct Shape {
     pub closed: bool,
     /// Points by frame, in pixels of the footage.
     pub keys: BTreeMap<FrameNumber, Vec<Point>>,
+    /// Frames on which the file does not show it, as the first and the last of each time.
+    pub absent: Vec<[FrameNumber; 2]>,
     /// How its border falls off where it is soft.
     pub falloff: Falloff,
+}
+
+impl Shape {
+    /// A shape with its keys. `hidden` are times in which the file does not show it. Says so if it is never shown.
+    fn new(
+        (name, closed): (String, bool),
+        mut keys: BTreeMap<FrameNumber, Vec<Point>>,
+        hidden: &[[f64; 2]],
+        footage: &Footage,
+    ) -> (Self, Option<String>) {
+        let absent = hidden::hide(&mut keys, hidden, footage);
+        let never =
+            absent.is_none().then(|| format!("the file shows the shape {name:?} on no frame; its keys are taken"));
+        (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: Falloff::default() }, never)
+    }
 }
 
 /// The shapes of a file.
@@ -63,13 +82,14 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     for (place, part) in scene.parts.iter().enumerate() {
         places.entry(part.name.clone()).or_insert(place);
     }
-    for Shape { name, closed, keys, falloff } in shapes {
+    for Shape { name, closed, keys, absent, falloff } in shapes {
         if let Some(&place) = places.get(&name) {
             let part = &mut scene.parts[place];
-            *part = Part { name, closed, keys, falloff, depth: part.depth, colour: part.colour, ..Part::default() };
+            let (depth, colour) = (part.depth, part.colour);
+            *part = Part { name, closed, keys, absent, falloff, depth, colour, ..Part::default() };
         } else {
             places.insert(name.clone(), scene.parts.len());
-            scene.parts.push(Part { name, closed, keys, falloff, depth, ..Part::default() });
+            scene.parts.push(Part { name, closed, keys, absent, falloff, depth, ..Part::default() });
             depth += 1.0;
         }
     }
@@ -86,6 +106,7 @@ mod tests {
             name: name.into(),
             closed: true,
             keys: BTreeMap::from([(2, vec![Point::ONE, Point::X, Point::Y])]),
+            absent: Vec::new(),
             falloff: Falloff::default(),
         };
         let old = Part {

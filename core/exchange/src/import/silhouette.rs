@@ -9,16 +9,17 @@
 //!   from their point. Exporters write both forms. The reader takes the reading with the shortest control polygon over all
 //!   keys of a shape: handles are near their points in one reading only. Of equal readings it takes places.
 //! - B-splines are uniform and cubic. The ends of an open one are repeated three times, so the curve reaches them.
-//! - Transformed layers are an error, since their shapes would be in the wrong place. Animated opacity is ignored.
-//!   Hidden shapes are left out with a warning.
+//! - Transformed layers are an error, since their shapes would be in the wrong place. Hidden shapes are left out with a
+//!   warning. A shape is hidden where its opacity is 0; other opacities are ignored.
 
+use super::channel::Channel;
 use super::limits::{Points, near};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, number, parsed, quoted};
 use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Falloff, Footage, FrameNumber};
+use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 
@@ -59,7 +60,9 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
             }
             ("Object" | "Shape", "Shape") => {
                 let name = names.free(node.attribute("label").unwrap_or(""));
-                shapes.push(shape(node, name, first, footage, &mut points)?);
+                let (shape, never) = shape(node, name, first, footage, &mut points)?;
+                never.into_iter().for_each(|never| left_out.push(node, never));
+                shapes.push(shape);
             }
             _ => {}
         }
@@ -86,9 +89,15 @@ fn untransformed(property: Node) -> Result<(), ImportError> {
     Ok(())
 }
 
-fn shape(node: Node, name: String, first: f64, footage: &Footage, points: &mut Points) -> Result<Shape, ImportError> {
-    let properties = node.descendants().filter(|n| n.tag_name().name() == "Property");
-    let Some(property) = properties.into_iter().find(|n| n.attribute("id") == Some("path")) else {
+/// A shape, and a warning if it is never shown.
+fn shape(
+    node: Node,
+    name: String,
+    first: f64,
+    footage: &Footage,
+    points: &mut Points,
+) -> Result<(Shape, Option<String>), ImportError> {
+    let Some(property) = property(node, "path") else {
         return Err(ImportError::at(node, format!("shape {name:?}: found no <Property id=\"path\">, expected one")));
     };
     let mut keys = Vec::new();
@@ -111,7 +120,25 @@ fn shape(node: Node, name: String, first: f64, footage: &Footage, points: &mut P
         NoContours::Refused(error) => error,
     })?;
     let keys: BTreeMap<_, _> = keys.iter().map(|key| key.frame).zip(contours).collect();
-    Ok(Shape { name, closed, keys, falloff: Falloff::default() })
+    let hidden = hidden(node, first)?;
+    Ok(Shape::new((name, closed), keys, &hidden, footage))
+}
+
+/// A property of a shape.
+fn property<'a, 'b>(shape: Node<'a, 'b>, id: &str) -> Option<Node<'a, 'b>> {
+    shape.descendants().find(|n| n.tag_name().name() == "Property" && n.attribute("id") == Some(id))
+}
+
+/// The times in which the opacity of a shape is 0. An opacity that is no number is not 0. Keys are held only if all say so.
+fn hidden(shape: Node, first: f64) -> Result<Vec<[f64; 2]>, ImportError> {
+    let Some(opacity) = property(shape, "opacity") else { return Ok(Vec::new()) };
+    let (mut keys, mut held) = (Vec::new(), true);
+    for key in opacity.children().filter(Node::is_element) {
+        let value = key.text().and_then(|text| text.trim().parse::<f64>().ok()).filter(|value| value.is_finite());
+        keys.push((number(key, "frame")?.unwrap_or_default() + first, value.unwrap_or(100.0)));
+        held &= key.attribute("interp") == Some("hold");
+    }
+    Ok(Channel::keyed(keys).map_or(Vec::new(), |opacity| opacity.zeros(held)))
 }
 
 /// The first two keys that differ in their number of points, or the first two keys.

@@ -7,6 +7,9 @@
 //! If a path has a SMIL animation of its `d` (`svg_animation`), as written by the export, its shape has a key wherever
 //! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives.
 //!
+//! The export writes painted regions and strokes too, which are no contours of parts: a region has another outline on
+//! every frame. They are left out, and one warning counts them. If there is nothing else, each stroke is a shape. Their ids and titles tell them (`"stroke-7"` and `stroke 7`).
+//!
 //! Limits: content that is not drawn in place (definitions, clips, masks, patterns, symbols) is ignored. Text, pictures
 //! and `use` are left out with a warning. Nesting, coordinates and points are bounded (`limits`).
 
@@ -14,10 +17,10 @@ use super::limits::{FARTHEST, Points, near};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, number, parsed, quoted};
-use super::svg_animation::{Keyed, keyed};
+use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
 use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Falloff, Footage, FrameNumber};
+use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use std::str::FromStr;
 use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
@@ -42,20 +45,45 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     if root.tag_name().name() != "svg" {
         return Err(ImportError::at(root, "expected <svg>, the root of an SVG document"));
     }
-    let mut reader = Reader {
-        footage,
-        still,
-        shapes: Vec::new(),
-        names: Names::default(),
-        points: Points::all(),
-        left_out: LeftOut::default(),
-    };
     let over = laid_over(root, footage)?;
-    reader.group(root, over)?;
-    if reader.shapes.is_empty() {
-        return Err(ImportError::Nothing("a path, polygon, polyline, line, rect, circle or ellipse"));
+    let read = |strokes| {
+        let mut reader = Reader::new(footage, still, strokes);
+        reader.group(root, over).map(|()| reader)
+    };
+    let mut reader = read(false)?;
+    if reader.shapes.is_empty() && reader.drawn.strokes > 0 {
+        reader = read(true)?;
     }
-    Ok(Shapes { shapes: reader.shapes, warnings: reader.left_out.lines(text) })
+    if reader.shapes.is_empty() {
+        return Err(ImportError::Nothing(match reader.drawn.regions {
+            0 => "a path, polygon, polyline, line, rect, circle or ellipse",
+            _ => "one beside the painted regions that Rototoon has written, which are no parts",
+        }));
+    }
+    let mut warnings = reader.left_out.lines(text);
+    warnings.extend(reader.drawn.told());
+    Ok(Shapes { shapes: reader.shapes, warnings })
+}
+
+/// How many elements of an export are left out.
+#[derive(Default)]
+struct Drawn {
+    regions: usize,
+    strokes: usize,
+}
+
+impl Drawn {
+    /// A warning for all of them.
+    fn told(&self) -> Option<String> {
+        let Self { regions, strokes } = self;
+        let what = match (regions, strokes) {
+            (0, 0) => return None,
+            (_, 0) => format!("painted regions ({regions})"),
+            (0, _) => format!("strokes ({strokes})"),
+            _ => format!("painted regions ({regions}) and strokes ({strokes})"),
+        };
+        Some(format!("{what} that Rototoon has written are left out: they are no parts"))
+    }
 }
 
 /// The transformation from units of the document to pixels of the footage.
@@ -98,14 +126,41 @@ struct Reader<'a> {
     names: Names,
     points: Points,
     left_out: LeftOut,
+    /// Whether strokes of an export are shapes.
+    strokes: bool,
+    drawn: Drawn,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn new(footage: &'a Footage, still: FrameNumber, strokes: bool) -> Self {
+        Self {
+            footage,
+            still,
+            shapes: Vec::new(),
+            names: Names::default(),
+            points: Points::all(),
+            left_out: LeftOut::default(),
+            strokes,
+            drawn: Drawn::default(),
+        }
+    }
+
     fn group(&mut self, node: Node, outer: Transform) -> Result<(), ImportError> {
         for child in node.children().filter(Node::is_element) {
             let name = child.tag_name().name();
             if NOT_DRAWN.contains(&name) || hidden(child) {
                 continue;
+            }
+            match drawn(child) {
+                Some(Written::Region) => {
+                    self.drawn.regions += 1;
+                    continue;
+                }
+                Some(Written::Stroke) if !self.strokes => {
+                    self.drawn.strokes += 1;
+                    continue;
+                }
+                _ => {}
             }
             if WITHOUT_OUTLINE.contains(&name) {
                 self.left_out.push(child, format!("<{name}> has no outline here and is left out"));
@@ -126,6 +181,9 @@ impl Reader<'_> {
             Some(keys) => keys,
             None => vec![Keyed { frame: self.still, text: text.to_owned() }],
         };
+        // A part that was exported before it was tracked is there between its keys.
+        let keys_only = node.attribute("data-keys") == Some("only");
+        let hidden = if keys_only { Vec::new() } else { hidden_times(node, self.footage) };
         let mut frames = Vec::new();
         for key in &keys {
             let mut paths = paths(node, &key.text, &mut self.points)?;
@@ -153,9 +211,31 @@ impl Reader<'_> {
             })?;
             let name = self.names.free(&name(node));
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
-            self.shapes.push(Shape { name, closed: start[number].closed, keys, falloff: Falloff::default() });
+            let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
+            never.into_iter().for_each(|never| self.left_out.push(node, never));
+            self.shapes.push(shape);
         }
         Ok(())
+    }
+}
+
+/// What an export writes beside the contours of parts.
+enum Written {
+    Region,
+    Stroke,
+}
+
+/// What an element of an export is.
+fn drawn(node: Node) -> Option<Written> {
+    let (id, title) = (node.attribute("id")?, title(node)?);
+    let words: Vec<&str> = title.split(' ').collect();
+    let number = |text: &str| text.parse::<i64>().is_ok();
+    match words[..] {
+        ["region", track] if number(track) && id.strip_prefix("fill-") == Some(track) => Some(Written::Region),
+        ["stroke", track] | ["frame", _, "stroke", track] if number(track) && id == title.replace(' ', "-") => {
+            Some(Written::Stroke)
+        }
+        _ => None,
     }
 }
 
@@ -164,10 +244,13 @@ fn hidden(node: Node) -> bool {
     node.attribute("display") == Some("none") || style.contains("display:none")
 }
 
+fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
+    node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text())
+}
+
 fn name(node: Node) -> String {
-    let title = node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text());
     let label = || node.attributes().find(|attribute| attribute.name() == "label").map(|attribute| attribute.value());
-    title.or_else(label).or_else(|| node.attribute("id")).unwrap_or("").to_owned()
+    title(node).or_else(label).or_else(|| node.attribute("id")).unwrap_or("").to_owned()
 }
 
 fn own_transform(node: Node) -> Result<Transform, ImportError> {
@@ -312,6 +395,41 @@ mod tests {
 
     fn read(content: &str) -> Result<Shapes, ImportError> {
         svg(&format!("<svg viewBox=\"10 0 100 50\">{content}</svg>"), &footage(), 6)
+    }
+
+    #[test]
+    fn painted_regions_and_strokes_of_an_export_are_counted_and_left_out() {
+        use crate::export::{SvgFill, SvgOptions, SvgStroke, svg_with_drawn};
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 30 };
+        let corners = |n: usize| -> Vec<Point> { (0..n).map(|k| Point::new(k as f64, (k * k) as f64)).collect() };
+        let part = rototoon_base::scene::Part {
+            name: "arm".into(),
+            closed: true,
+            keys: [(0, corners(3))].into(),
+            ..Default::default()
+        };
+        // The outline of a region has another number of points on every frame.
+        let outlines = (0..4).map(|frame| (frame, vec![corners(4 + frame as usize)])).collect();
+        let fills = [SvgFill { track: 5, outlines, colour: [1.0, 0.0, 0.0] }];
+        let stroke =
+            |name: &str| SvgStroke { name: name.into(), points: [(1, corners(2))].into(), ..SvgStroke::default() };
+        let strokes = [stroke("stroke 7"), stroke("frame -3 stroke 2")];
+        let scene = rototoon_base::scene::Scene { footage: footage.clone(), parts: vec![part] };
+        let text = svg_with_drawn(&scene, &fills, &strokes, &SvgOptions::default());
+        let found = svg(&text, &footage, 0).unwrap();
+        assert_eq!(found.shapes.iter().map(|shape| shape.name.as_str()).collect::<Vec<_>>(), ["arm"]);
+        let told = "painted regions (1) and strokes (2) that Rototoon has written are left out: they are no parts";
+        assert_eq!(found.warnings, [told]);
+        // Without a part the strokes are what there is to import.
+        let bare = rototoon_base::scene::Scene { parts: Vec::new(), ..scene };
+        let found = svg(&svg_with_drawn(&bare, &fills, &strokes, &SvgOptions::default()), &footage, 0).unwrap();
+        assert_eq!(found.shapes.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["stroke 7", "frame -3 stroke 2"]);
+        assert!(found.warnings[0].starts_with("painted regions (1) that"), "{:?}", found.warnings);
+        let text = svg_with_drawn(&bare, &fills, &[], &SvgOptions::default());
+        assert!(svg(&text, &footage, 0).unwrap_err().to_string().contains("painted regions that Rototoon has written"));
+        // A part of such a name is a part.
+        let own = "<svg><path id='a' d='M0 0L9 9'><title>stroke 7</title></path></svg>";
+        assert_eq!(svg(own, &footage, 0).unwrap().shapes[0].name, "stroke 7");
     }
 
     #[test]

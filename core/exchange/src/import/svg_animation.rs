@@ -2,15 +2,20 @@
 //!
 //! An `animate` element of `d` has values at shares of its duration: those of `keyTimes`, or even ones. A held value
 //! (`calcMode="discrete"`) gives a key on the first and on the last frame of its interval. Any other value gives a key
-//! on the frame nearest to its time. An `animate` element of `visibility` removes the keys of hidden frames.
+//! on the frame nearest to its time. An `animate` element of `visibility` removes the keys of hidden frames. What it
+//! hides, or an `animate` element of `opacity`, is hidden.
 //!
 //! Limits: an animation starts on the first frame of the footage, and repeats are ignored. The value at the very end of
 //! an animation is left out, since it is one frame after the footage.
 
 use super::ImportError;
+use super::channel::Channel;
 use super::problem::quoted;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
+
+/// Values of `visibility` that hide.
+const HIDING: [&str; 2] = ["hidden", "collapse"];
 
 /// Path data on a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,6 +49,20 @@ pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Vec<Keyed>>,
     Ok(Some(keys))
 }
 
+/// The times in which an element is not shown. An animation that cannot be read hides nothing.
+pub(super) fn hidden(node: Node, footage: &Footage) -> Vec<[f64; 2]> {
+    let mut found = Vec::new();
+    for attribute in ["visibility", "opacity"] {
+        let Ok(Some(Animation { values, held })) = animation(node, attribute, footage) else { continue };
+        let shown = |text: &str| if HIDING.contains(&text) { 0.0 } else { text.parse().unwrap_or(1.0) };
+        let keys = values.iter().map(|(start, text)| (*start as f64 + f64::from(footage.first), shown(text)));
+        // Visibility is always held.
+        let held = held || attribute == "visibility";
+        found.extend(Channel::keyed(keys.collect()).into_iter().flat_map(|channel| channel.zeros(held)));
+    }
+    found
+}
+
 /// Frames, counted from the first of the footage, on which one value is shown.
 struct Run {
     /// Index of the value.
@@ -66,7 +85,7 @@ fn runs(data: &Animation, visibility: Option<&Animation>, count: i64) -> Vec<Run
     let mut runs: Vec<Run> = Vec::new();
     for (k, &first) in starts.iter().enumerate() {
         let last = starts.get(k + 1).copied().unwrap_or(count) - 1;
-        let visible = current(shown, first).is_none_or(|k| shown[k].1 != "hidden");
+        let visible = current(shown, first).is_none_or(|k| !HIDING.contains(&shown[k].1));
         let Some(value) = current(&data.values, first).filter(|_| visible) else { continue };
         match runs.last_mut() {
             Some(run) if run.value == value && run.last + 1 == first => run.last = last,

@@ -11,7 +11,8 @@
 //!   as linear, as Natron does for control points.
 //! - A curve is open if it is not closed yet or was drawn as an open one.
 //! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
-//! - The falloff of a feather is read. Feather, opacity and activity are ignored.
+//! - The falloff of a feather is read. A curve is hidden where its opacity is 0 and, if its life time is *Custom*, where it is not
+//!   active. Other opacities, other life times and feather are ignored.
 //!
 //! Source: the classes `RotoContext`, `RotoLayer`, `RotoDrawableItem`, `Bezier`, `BezierCP`, `Curve` and `Knob` with their
 //! serialisations in the public sources of Natron 2. Natron 3, which was never released, writes YAML instead.
@@ -31,6 +32,9 @@ use rototoon_base::scene::{Falloff, FalloffCurve, Footage, FrameNumber};
 use roxmltree::Node;
 use std::collections::BTreeSet;
 use transform::{Transform, parameter};
+
+/// The life time *Custom*: the curve has keys for its activity.
+const CUSTOM: f64 = 4.0;
 
 /// Reads the shapes of a project for footage. Shapes that are not animated get their key on frame `still`.
 ///
@@ -113,23 +117,21 @@ impl Reader<'_> {
             NoContours::Unequal => ImportError::at(item, "found no control point, expected at least two"),
         })?;
         let name = self.names.free(&name(item));
-        let falloff = self.falloff(item);
-        Ok(Shape { name, closed, keys: frames.into_iter().zip(made).collect(), falloff })
+        let (falloff, hidden) = (self.falloff(item), hidden(item));
+        let (shape, never) = Shape::new((name, closed), frames.into_iter().zip(made).collect(), &hidden, self.footage);
+        never.into_iter().for_each(|never| self.left_out.push(item, never));
+        Ok(Shape { falloff, ..shape })
     }
 
     /// The falloff of a curve. One that cannot be read is that of a curve without one: its outline counts.
     fn falloff(&mut self, item: Node) -> Falloff {
-        let single = |id, fallback: f64| {
-            let own = child(item, "RotoDrawableItemSerialization")?;
-            parameter(own, id, &[fallback]).ok()?.pop()
-        };
-        let Some(rate) = single("featherFallOff", 1.0) else { return Falloff::default() };
+        let Some(rate) = single(item, "featherFallOff", 1.0) else { return Falloff::default() };
         if rate.turns().next().is_some() {
             let name = name(item);
             self.left_out.push(item, format!("the falloff of {name:?} has keys: its first value is taken"));
         }
         // The first ramp is that of all curves at first. The second one is its third power.
-        let ramp = single("fallOffType", 0.0).map_or(0.0, |ramp| ramp.at(0.0));
+        let ramp = single(item, "fallOffType", 0.0).map_or(0.0, |ramp| ramp.at(0.0));
         let (power, curve) = match ramp as i32 {
             1 => (3.0, Some(FalloffCurve::Linear)),
             2 => (1.0, Some(FalloffCurve::EaseIn)),
@@ -179,6 +181,21 @@ impl Reader<'_> {
         let knots: Vec<[Point; 3]> = knots.iter().map(|knot| [&knot[0], &knot[1], &knot[2]].map(place)).collect();
         Path::through(&knots, closed)
     }
+}
+
+/// A parameter of one number; `None` if it cannot be read.
+fn single(item: Node, id: &str, fallback: f64) -> Option<Channel> {
+    let own = child(item, "RotoDrawableItemSerialization")?;
+    parameter(own, id, &[fallback]).ok()?.pop()
+}
+
+/// The times in which a curve is not shown.
+fn hidden(item: Node) -> Vec<[f64; 2]> {
+    let mut found = single(item, "opacity", 1.0).map_or(Vec::new(), |opacity| opacity.zeros(false));
+    if single(item, "lifeTime", 0.0).is_some_and(|time| time.is(CUSTOM)) {
+        found.extend(single(item, "activated", 1.0).into_iter().flat_map(|active| active.zeros(true)));
+    }
+    found
 }
 
 /// The control points of a curve.

@@ -12,7 +12,8 @@
 //! - Layers and shapes may have a `transform`, applied here; a shape then also has keys where its transformation has.
 //! - Left out with a warning that names the shape, since its place or form would be wrong: open B-splines (how they end is not
 //!   public), weights other than 1, expressions, and what `transform` leaves out.
-//! - The rate at which a feather falls off is read. Feather, opacity and brush strokes are ignored.
+//! - The rate at which a feather falls off is read. A shape is hidden where its opacity (`opc`) is 0 and outside of its lifetime,
+//!   if that is a range of frames. Other opacities, those of layers, feather and brush strokes are ignored.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format"; scripts of Nuke 7 to 13 in public repositories.
 
@@ -38,6 +39,8 @@ use words::{Item, items, place, wrong};
 const RELATIVE_HANDLES: u32 = 8192;
 /// Flag of a curve: the last point does not join the first.
 const OPEN: u32 = 32;
+/// Type of lifetime: a range of frames.
+const FRAME_RANGE: f64 = 4.0;
 
 /// Reads the shapes of a script for footage. Shapes that are not animated get their key on frame `still`.
 ///
@@ -150,17 +153,37 @@ impl Reader<'_> {
         let made = made.map_err(|_| full())?;
         self.left = left;
         let keys: BTreeMap<_, _> = frames.into_iter().zip(made).collect();
-        let falloff = self.falloff(item, name);
-        self.found.shapes.push(Shape { name: self.names.free(name), closed: outline.closed, keys, falloff });
+        let (falloff, hidden) = (self.falloff(item, name), self.hidden(item, name));
+        let (shape, never) = Shape::new((self.names.free(name), outline.closed), keys, &hidden, self.footage);
+        self.found.warnings.extend(never.map(|never| format!("{}: {never}", place(self.text, item.start))));
+        self.found.shapes.push(Shape { falloff, ..shape });
         Ok(())
+    }
+
+    /// The times in which a shape is not shown. An opacity that cannot be read is told, and counts as one that is never 0.
+    fn hidden(&mut self, item: &Item, name: &str) -> Vec<[f64; 2]> {
+        let mut found = match attribute(item, "opc").map(|value| (value, channel(self.text, value, "a"))) {
+            Some((_, Ok(opacity))) => opacity.zeros(false),
+            Some((value, Err(_))) => {
+                let place = place(self.text, value.start);
+                let warning = format!(
+                    "{place}: the opacity of {name:?} cannot be read: frames on which it is hidden are not known"
+                );
+                self.found.warnings.push(warning);
+                Vec::new()
+            }
+            None => Vec::new(),
+        };
+        let still = |name: &str| attribute(item, name).and_then(|value| number(self.text, value, "a").ok());
+        if let (Some(FRAME_RANGE), Some(first), Some(last)) = (still("ltt"), still("ltn"), still("ltm")) {
+            found.extend([[f64::NEG_INFINITY, first - 1.0], [last + 1.0, f64::INFINITY]]);
+        }
+        found
     }
 
     /// The falloff among the attributes of a shape. One that cannot be read is that of a shape without one: its outline counts.
     fn falloff(&mut self, item: &Item, name: &str) -> Falloff {
-        let attributes = item.items().iter().filter(|list| list.name() == Some("a")).flat_map(Item::items);
-        let Some(value) = attributes.skip_while(|word| word.word() != Some("ff")).nth(1) else {
-            return Falloff::default();
-        };
+        let Some(value) = attribute(item, "ff") else { return Falloff::default() };
         let Ok(rate) = channel(self.text, value, "a") else { return Falloff::default() };
         if rate.turns().next().is_some() {
             let place = place(self.text, value.start);
@@ -271,6 +294,12 @@ impl Reader<'_> {
             .collect();
         Path::through(&knots, outline.closed)
     }
+}
+
+/// The value of an attribute of a shape.
+fn attribute<'a>(item: &'a Item<'a>, name: &str) -> Option<&'a Item<'a>> {
+    let attributes = item.items().iter().filter(|list| list.name() == Some("a")).flat_map(Item::items);
+    attributes.skip_while(|word| word.word() != Some(name)).nth(1)
 }
 
 #[cfg(test)]
