@@ -17,6 +17,7 @@ mod report;
 mod reshape;
 mod shapeless;
 mod sheet;
+mod sheet_drawn;
 pub mod spans;
 mod strokes;
 mod style;

@@ -13,8 +13,8 @@ use rototoon::scene::parameters::Stage;
 pub fn command() -> Command {
     Command::new("sheet")
         .about(
-            "Draws a contact sheet: the frames with their contours, those with lost parts in red borders, those with \
-             doubtful parts in amber ones. Of more than 48 frames it shows the worst ones and some between",
+            "Draws a contact sheet: the frames with their contours, strokes and paint, those with something lost in red borders, \
+             those with something doubtful in amber ones. Of more than 48 frames it shows the worst ones and some between",
         )
         .arg(arguments::project())
         .arg(arguments::output("SHEET", "The picture to write, such as sheet.png"))
@@ -27,11 +27,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if Format::of(to) != Some(Format::Png) {
         return Err(Failure::Use(format!("{}: expected a name that ends in .png", to.display())));
     }
-    let document = project::load(from)?;
+    let document = project::load_either(from)?;
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
-    let sheet =
-        progress::run(arguments::threads(given), |bar| Ok(pipeline::sheet(&document, project::folder(from), bar)?))?;
+    let sheet = progress::run(arguments::threads(given), |bar| {
+        pipeline::sheet(&document, project::folder(from), bar).map_err(|error| Failure::of(error, from))
+    })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
     Ok(write_whole(to, &bytes)?)
 }

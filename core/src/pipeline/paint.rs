@@ -4,11 +4,12 @@ use super::picture::RenderJob;
 use super::strokes::{self, Seen};
 use super::{PipelineError, fill, frames_of};
 use crate::geometry::Point;
+use crate::image::colour;
 use crate::project::Document;
 use crate::project::fills::FilledRegion;
 use crate::render::paint::{Region, paint, paint_picture, painted, shares};
 use crate::render::{EncodeError, Format, stroke};
-use crate::scene::{Footage, FrameNumber, Raster};
+use crate::scene::{Colour, Footage, FrameNumber, Raster};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
@@ -43,8 +44,7 @@ impl Shown {
         let missing =
             |field: &str, expected: &str| PipelineError::Field(format!("{field}: found none, expected {expected}"));
         if regions {
-            let filled = document.filled().map_err(|error| fill::field(&error))?;
-            shown.regions = filled.into_iter().map(|drawing| (drawing.frame, drawing.regions)).collect();
+            shown.regions = regions_of(document)?;
             if shown.regions.is_empty() {
                 return Err(missing("filled", "the painted regions that `rototoon fill` writes"));
             }
@@ -56,6 +56,21 @@ impl Shown {
             }
         }
         Ok(shown)
+    }
+
+    /// The painted regions of a document alone, in pixels of the footage.
+    ///
+    /// # Errors
+    ///
+    /// [`PipelineError::Field`] if they cannot be read.
+    pub fn regions(document: &Document) -> Result<Self, PipelineError> {
+        Ok(Self { regions: regions_of(document)?, scale: 1.0, ..Self::default() })
+    }
+
+    /// The frames with painted regions, each with the least confidence of one.
+    pub fn least_confidence(&self) -> impl Iterator<Item = (FrameNumber, f64)> + '_ {
+        let least = |regions: &[FilledRegion]| regions.iter().map(|region| region.confidence).fold(1.0, f64::min);
+        self.regions.iter().map(move |(frame, regions)| (*frame, least(regions)))
     }
 
     /// What is shown on a frame, from back to front: painted regions, solid shapes, lines.
@@ -103,6 +118,26 @@ impl Shown {
         let own = self.on(frame);
         painted(drawing, &paint(&own, &shares(&own, drawing.width(), drawing.height())))
     }
+
+    /// The picture of a frame, which hides what is behind it, over what is shown there; `None` if that is nothing.
+    pub fn under_picture(&self, frame: FrameNumber, picture: &Raster<Colour>) -> Option<Raster<Colour>> {
+        self.regions.get(&frame).filter(|regions| !regions.is_empty())?;
+        let layer = Raster::from_fn(picture.width(), picture.height(), |x, y| {
+            let [r, g, b] = picture.get(x, y).map(colour::decode);
+            [r, g, b, 1.0]
+        });
+        let over = self.under(frame, &layer);
+        Some(Raster::from_fn(over.width(), over.height(), |x, y| {
+            let [r, g, b, _] = over.get(x, y);
+            [r, g, b].map(colour::encode)
+        }))
+    }
+}
+
+/// The painted regions of a document by frame.
+fn regions_of(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<FilledRegion>>, PipelineError> {
+    let filled = document.filled().map_err(|error| fill::field(&error))?;
+    Ok(filled.into_iter().map(|drawing| (drawing.frame, drawing.regions)).collect())
 }
 
 /// The footage with the size of a job's pictures.

@@ -1,11 +1,12 @@
-//! A contact sheet: small pictures of the frames with their contours, in the order of time. Frames on which a part is
-//! lost have a red border, those on which one is doubtful an amber one.
+//! A contact sheet: small pictures of the frames with their contours and strokes, over their painted regions, in the order of
+//! time. Frames on which a part or a stroke is lost have a red border, those on which one or a region is doubtful an amber one.
 
+use super::sheet_drawn::Contents;
 use super::{PipelineError, frames, memory};
 use crate::image::resize::resize;
 use crate::project::Document;
 use crate::render::{OverlayOptions, overlay};
-use crate::scene::{Colour, FrameNumber, FrameSource, Outcome, Progress, Raster, Verdict};
+use crate::scene::{Colour, Footage, FrameNumber, FrameSource, Outcome, Progress, Raster, Scene, Verdict};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -36,15 +37,20 @@ const INK: Colour = [0.95; 3];
 ///
 /// # Errors
 ///
-/// An invalid pattern, an unreadable frame, or [`PipelineError::Cancelled`].
+/// An invalid pattern, an unreadable frame, strokes or regions that cannot be read, or [`PipelineError::Cancelled`].
 pub fn sheet(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Raster<Colour>, PipelineError> {
     let sequence = frames(document, folder)?;
     memory::to_follow(&document.scene.footage)?;
-    let verdicts = verdicts(document);
-    let chosen = chosen(document, &verdicts);
+    let contents = Contents::of(document)?;
+    let mut verdicts = verdicts(&contents.scene);
+    contents.doubts().for_each(|(frame, verdict)| worse(&mut verdicts, frame, verdict));
+    let chosen = chosen(&document.scene.footage, &verdicts);
     let done = AtomicUsize::new(0);
     let cells = chosen.par_iter().with_max_len(1).map(|&frame| {
-        let cell = cell(document, frame, &*sequence.picture(frame)?, verdicts.get(&frame).copied());
+        let picture = sequence.picture(frame)?;
+        let painted = contents.below(frame, &picture);
+        let below = painted.as_ref().unwrap_or(&*picture);
+        let cell = cell(&contents.scene, frame, below, verdicts.get(&frame).copied());
         let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.report("Drawing", finished as f64 / chosen.len() as f64)?;
         Ok(cell)
@@ -54,23 +60,25 @@ pub fn sheet(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
 }
 
 /// The worst verdict on any part, by frame.
-fn verdicts(document: &Document) -> BTreeMap<FrameNumber, Verdict> {
+fn verdicts(scene: &Scene) -> BTreeMap<FrameNumber, Verdict> {
     let mut worst = BTreeMap::new();
-    for part in &document.scene.parts {
+    for part in &scene.parts {
         let Outcome { sure, doubtful, lost } = Outcome::of(part);
         for (frames, verdict) in [(sure, Verdict::Sure), (doubtful, Verdict::Doubtful), (lost, Verdict::Lost)] {
-            for frame in frames {
-                let known = worst.entry(frame).or_insert(verdict);
-                *known = verdict.max(*known);
-            }
+            frames.into_iter().for_each(|frame| worse(&mut worst, frame, verdict));
         }
     }
     worst
 }
 
+/// Takes a verdict on a frame, if it is worse than the known one.
+fn worse(worst: &mut BTreeMap<FrameNumber, Verdict>, frame: FrameNumber, verdict: Verdict) {
+    let known = worst.entry(frame).or_insert(verdict);
+    *known = verdict.max(*known);
+}
+
 /// The frames of the sheet: all if they are few, otherwise the worst ones and some between.
-fn chosen(document: &Document, verdicts: &BTreeMap<FrameNumber, Verdict>) -> Vec<FrameNumber> {
-    let footage = &document.scene.footage;
+fn chosen(footage: &Footage, verdicts: &BTreeMap<FrameNumber, Verdict>) -> Vec<FrameNumber> {
     let (first, last) = (i64::from(footage.first), i64::from(footage.last));
     if last - first < PICTURES as i64 {
         return (footage.first..=footage.last).collect();
@@ -85,21 +93,23 @@ fn chosen(document: &Document, verdicts: &BTreeMap<FrameNumber, Verdict>) -> Vec
     chosen.into_iter().collect()
 }
 
-fn cell(document: &Document, frame: FrameNumber, below: &Raster<Colour>, verdict: Option<Verdict>) -> Raster<Colour> {
+fn cell(scene: &Scene, frame: FrameNumber, below: &Raster<Colour>, verdict: Option<Verdict>) -> Raster<Colour> {
     let scale = (SIZE as f64 / below.width().max(below.height()) as f64).min(1.0);
     let options = OverlayOptions { line_width: LINE / scale, points: false, confidence: true };
     let small = |length: usize| ((length as f64 * scale).round() as usize).max(1);
-    let drawn =
-        resize(&overlay(&document.scene, frame, below, None, &options), small(below.width()), small(below.height()));
+    let drawn = resize(&overlay(scene, frame, below, None, &options), small(below.width()), small(below.height()));
     let border = match verdict {
         Some(Verdict::Lost) => [0.9, 0.1, 0.1],
         Some(Verdict::Doubtful) => [0.95, 0.65, 0.1],
         _ => PLAIN,
     };
-    let mut cell = Raster::new(drawn.width() + 2 * BORDER, drawn.height() + 2 * BORDER + STRIP, border);
-    put(&mut cell, &drawn, (BORDER, BORDER + STRIP));
-    put(&mut cell, &Raster::new(drawn.width(), STRIP, PLAIN), (BORDER, BORDER));
-    write(&mut cell, &frame.to_string(), (BORDER + DOT, BORDER + DOT));
+    let number = frame.to_string();
+    // A narrow picture stands in a wider cell, because the number must be readable.
+    let inside = drawn.width().max(number.len() * 4 * DOT + DOT);
+    let mut cell = Raster::new(inside + 2 * BORDER, drawn.height() + 2 * BORDER + STRIP, border);
+    put(&mut cell, &Raster::new(inside, drawn.height() + STRIP, PLAIN), (BORDER, BORDER));
+    put(&mut cell, &drawn, (BORDER + (inside - drawn.width()) / 2, BORDER + STRIP));
+    write(&mut cell, &number, (BORDER + DOT, BORDER + DOT));
     cell
 }
 
@@ -117,6 +127,7 @@ fn arranged(cells: &[Raster<Colour>]) -> Raster<Colour> {
 /// Copies a picture into a larger one, as far as it fits.
 fn put(whole: &mut Raster<Colour>, picture: &Raster<Colour>, (left, top): (usize, usize)) {
     let width = picture.width().min(whole.width().saturating_sub(left));
+    let left = left.min(whole.width());
     for y in 0..picture.height().min(whole.height().saturating_sub(top)) {
         whole.row_mut(top + y)[left..left + width].copy_from_slice(&picture.row(y)[..width]);
     }
@@ -155,9 +166,9 @@ fn write(picture: &mut Raster<Colour>, number: &str, (left, top): (usize, usize)
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::scene::{Footage, Part, Scene};
+    use crate::scene::Part;
 
-    fn document(last: FrameNumber, confidence: &[(FrameNumber, f64)]) -> Document {
+    fn scene(last: FrameNumber, confidence: &[(FrameNumber, f64)]) -> Scene {
         let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 24.0, width: 64, height: 48 };
         let square = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0), (10.0, 30.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let part = Part {
@@ -167,31 +178,48 @@ mod tests {
             confidence: confidence.iter().map(|&(frame, value)| (frame, vec![value; 4])).collect(),
             ..Part::default()
         };
-        Document::new(Scene { footage, parts: vec![part] })
+        Scene { footage, parts: vec![part] }
     }
 
     #[test]
     fn long_footage_shows_its_worst_frames_and_its_course() {
-        let few = document(9, &[]);
-        assert_eq!(chosen(&few, &verdicts(&few)), (0..10).collect::<Vec<_>>());
-        let many = document(1000, &[(501, 0.6), (777, 0.1), (778, 0.95)]);
-        let frames = chosen(&many, &verdicts(&many));
+        let few = scene(9, &[]);
+        assert_eq!(chosen(&few.footage, &verdicts(&few)), (0..10).collect::<Vec<_>>());
+        let many = scene(1000, &[(501, 0.6), (777, 0.1), (778, 0.95)]);
+        let frames = chosen(&many.footage, &verdicts(&many));
         assert!(frames.len() <= PICTURES && frames.len() > PICTURES - 4, "{}", frames.len());
         assert!([0, 501, 777, 1000].iter().all(|frame| frames.contains(frame)), "{frames:?}");
     }
 
     #[test]
     fn lost_frames_have_a_red_border_and_numbers_are_written() {
-        let document = document(3, &[(1, 0.1), (2, 0.6), (3, 0.9)]);
-        let verdicts = verdicts(&document);
+        let scene = scene(3, &[(1, 0.1), (2, 0.6), (3, 0.9)]);
+        let verdicts = verdicts(&scene);
         let picture = Raster::new(64, 48, [1.0; 3]);
-        let border = |frame| cell(&document, frame, &picture, verdicts.get(&frame).copied()).get(1, 1);
+        let border = |frame| cell(&scene, frame, &picture, verdicts.get(&frame).copied()).get(1, 1);
         let [key, lost, doubtful, sure] = [0, 1, 2, 3].map(border);
         assert!(key == PLAIN && sure == PLAIN && lost[0] > 0.8 && lost[1] < 0.3 && doubtful[1] > 0.5);
-        let cell = cell(&document, 1, &picture, None);
+        let cell = cell(&scene, 1, &picture, None);
         let inked = (0..STRIP).flat_map(|y| cell.row(BORDER + y)).filter(|colour| **colour == INK).count();
         assert_eq!(inked, 8 * DOT * DOT, "the figure 1 has eight dots");
         let sheet = arranged(&vec![cell.clone(); 7]);
         assert_eq!((sheet.width(), sheet.height()), (6 * (cell.width() + GAP) + GAP, 2 * (cell.height() + GAP) + GAP));
+    }
+
+    #[test]
+    fn a_picture_of_any_size_has_a_readable_number() {
+        let scene = scene(3, &[]);
+        let inked = |cell: &Raster<Colour>| cell.data().iter().filter(|colour| **colour == INK).count();
+        let wide = Raster::new(300, 20, [1.0; 3]);
+        let sizes = [1, 2, 7, 24, 32, 48, 64, 400].iter().flat_map(|&w| [1, 3, 32, 1920].map(|h| (w, h)));
+        for (width, height) in sizes {
+            for frame in [0, 10, 1001, 86_400, 1_000_000, -101, FrameNumber::MIN] {
+                let small = cell(&scene, frame, &Raster::new(width, height, [1.0; 3]), None);
+                let expected = inked(&cell(&scene, frame, &wide, None));
+                assert_eq!(inked(&small), expected, "{width}x{height}, frame {frame}");
+                let sheet = arranged(&[small.clone(), small]);
+                assert_eq!(inked(&sheet), 2 * expected, "{width}x{height}, frame {frame}");
+            }
+        }
     }
 }

@@ -193,3 +193,18 @@ fn forms_without_strokes_are_not_written_of_drawings() {
     }
     assert_eq!((export("a.svg").0, export("a.json").0), (Some(0), Some(0)));
 }
+
+#[test]
+fn a_sheet_shows_strokes_and_paint() {
+    let (folder, path) = project(drawn());
+    let to = folder.path().join("sheet.png");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("sheet").arg(&path).arg("-o").arg(&to).output().unwrap();
+    assert!(output.status.success() && told(&output).is_empty(), "{}", told(&output));
+    let sheet = image::open(to).unwrap().to_rgb8();
+    // A picture begins 4 px from the sheet's edge, behind a border of 5 px and below a strip of 21 px.
+    assert_eq!(sheet.get_pixel(9 + 15, 30 + 8).0, [255, 0, 0]);
+    let line = sheet.get_pixel(9 + 33, 30 + 15).0;
+    assert!(line.iter().any(|value| *value < 200), "{line:?}");
+    assert_eq!(sheet.get_pixel(9 + 33, 30 + 25).0, [255; 3]);
+}
