@@ -11,6 +11,7 @@ mod tests;
 use super::{PipelineError, frames, frames_of};
 use crate::export::SvgFill;
 use crate::fill::{Click, Page, Paint, Source, carry, fills};
+use crate::geometry::Point;
 use crate::lines::Options;
 use crate::project::Document;
 use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
@@ -49,25 +50,28 @@ pub struct FilledFrame {
 }
 
 /// A click that paints nothing: it lies on a line or outside of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MissedClick {
     /// The frame.
     pub frame: FrameNumber,
+    /// Where it is, in pixels.
+    pub at: Point,
     /// Index of the frame's entry in the document's field `fills`.
     pub entry: usize,
     /// Index of the click among those of the frame.
     pub click: usize,
 }
 
-/// Its place in the document.
+/// Its place in the footage and in the document.
 impl fmt::Display for MissedClick {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "fills[{}].regions[{}].at", self.entry, self.click)
+        let Self { frame, at, entry, click } = self;
+        write!(f, "frame {frame}, pixel ({:.1}, {:.1}): the click fills[{entry}].regions[{click}]", at.x, at.y)
     }
 }
 
 /// What became of all frames.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
     /// The frames, in order.
     pub frames: Vec<FilledFrame>,
@@ -336,7 +340,8 @@ impl Painting<'_> {
 
     fn miss(&mut self, clicks: &(usize, FillClicks), missed: &[usize]) {
         let (entry, frame) = (clicks.0, clicks.1.frame);
-        self.report.missed.extend(missed.iter().map(|&click| MissedClick { frame, entry, click }));
+        let one = |&click: &usize| MissedClick { frame, at: clicks.1.clicks[click].at, entry, click };
+        self.report.missed.extend(missed.iter().map(one));
     }
 
     /// Puts a painted drawing down.

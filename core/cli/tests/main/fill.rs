@@ -85,7 +85,7 @@ fn clicks_that_paint_nothing_are_named() {
     let (folder, path) = project(fields);
     let output = run("fill", &path, &folder.path().join("painted.json"), &["--frames", "0-1"]);
     assert!(output.status.success());
-    let expected = "note: fills[0].regions[3].at lies on a line or outside of the picture, so it paints nothing";
+    let expected = "note: frame 0, pixel (400.0, 3.0): the click fills[0].regions[3] lies on a line or outside of the picture, so it paints nothing";
     assert!(told(&output).contains(expected), "{}", told(&output));
 }
 

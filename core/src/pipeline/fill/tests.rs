@@ -205,7 +205,8 @@ fn errors_name_the_field() {
     );
     let mut outside = film().clicked(&[(0, &[click((5.0, 5.0), PAPER), click((900.0, 5.0), RED)])]);
     let report = outside.fill().unwrap();
-    assert_eq!(report.missed.iter().map(ToString::to_string).collect::<Vec<_>>(), ["fills[0].regions[1].at"]);
+    let told: Vec<_> = report.missed.iter().map(ToString::to_string).collect();
+    assert_eq!(told, ["frame 0, pixel (900.0, 5.0): the click fills[0].regions[1]"]);
     assert_eq!((report.missed[0].frame, report.missed[0].click), (0, 1));
     let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &FillOptions::default(), &Silent);
     assert_eq!(range.unwrap_err().to_string(), "frames: found 0 to 7, expected frames of the footage, 0 to 1");
