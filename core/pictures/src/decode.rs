@@ -19,7 +19,8 @@
 use super::error::DecodeError;
 use super::open::{check_size, decoder, open};
 use super::stored::Stored;
-use image::{ColorType, DynamicImage, ImageDecoder};
+use super::tiles;
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -58,6 +59,21 @@ pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Co
 pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<[f32; 4]>, DecodeError> {
     let (stored, size) = stored(path, expected, size_of::<[f32; 4]>())?;
     raster(size, stored.layer())
+}
+
+/// Width of a pixel divided by its height, as an OpenEXR file says; 1 for other files, and for those that cannot be read or say
+/// nothing sensible. It reads the header of the file only.
+pub fn pixel_aspect(path: &Path) -> f32 {
+    const SENSIBLE: std::ops::RangeInclusive<f32> = 0.01..=100.0;
+    let read = || {
+        let reader = open(path, false)?;
+        if reader.format() != Some(ImageFormat::OpenExr) {
+            return Ok(1.0);
+        }
+        let headers = tiles::headers(&mut reader.into_inner())?;
+        Ok(headers.first().map_or(1.0, |header| header.shared_attributes.pixel_aspect))
+    };
+    guarded(read).ok().filter(|aspect| SENSIBLE.contains(aspect)).unwrap_or(1.0)
 }
 
 /// Bytes of the picture in a file as [`super::store`] keeps it. Of floats this is a guess: nearly all have 16 bits. It
@@ -111,7 +127,7 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, DecodeError>) -> Result<T, Decode
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{ExtendedColorType, ImageBuffer, ImageFormat, Luma, LumaA, Rgb, Rgba};
+    use image::{ExtendedColorType, ImageBuffer, Luma, LumaA, Rgb, Rgba};
     use rototoon_image::colour::{decode as to_light, encode};
     use std::path::PathBuf;
     use tempfile::TempDir;

@@ -7,7 +7,7 @@
 //!
 //! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
-use super::decode::{raster, stored};
+use super::decode::{pixel_aspect, raster, stored};
 use super::error::DecodeError;
 use super::store;
 use super::stored::Stored;
@@ -94,6 +94,11 @@ impl Sequence {
     pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
         self.inside(frame)?;
         self.read(frame, Stored::layer)
+    }
+
+    /// Width of a frame's pixels divided by their height ([`pixel_aspect`]).
+    pub fn pixel_aspect(&self, frame: FrameNumber) -> f32 {
+        pixel_aspect(&self.path(frame))
     }
 
     fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {

@@ -4,6 +4,7 @@
 //! any text. Characters that separate layers or are not allowed in names are replaced ([`layer_name`]).
 
 use super::encode::EncodeError;
+use super::header;
 use exr::image::write::WritableImage;
 use exr::image::write::layers::WritableLayers;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
@@ -125,43 +126,8 @@ where
     let written = image.write().non_parallel().to_buffered(&mut bytes);
     written.map_err(|error| failed(error.to_string()))?;
     let mut bytes = bytes.into_inner();
-    sort_headers(&mut bytes).ok_or_else(|| failed("its header cannot be read again".to_owned()))?;
+    header::sort(&mut bytes).ok_or_else(|| failed("its header cannot be read again".to_owned()))?;
     Ok(bytes)
-}
-
-/// Sorts the entries of each part's header by name. The encoder writes them in an order that changes between runs.
-fn sort_headers(bytes: &mut [u8]) -> Option<()> {
-    /// Magic number and version.
-    const START: usize = 8;
-    /// The bit of the version's second byte that tells of several parts. An empty header follows the last of them.
-    const SEVERAL: u8 = 0x10;
-    let several = bytes.get(5)? & SEVERAL != 0;
-    let mut start = START;
-    loop {
-        start = sort_header(bytes, start)? + 1;
-        if !several || *bytes.get(start)? == 0 {
-            return Some(());
-        }
-    }
-}
-
-/// Sorts the entries of the header that begins at a byte. Returns the place of the zero that ends it.
-fn sort_header(bytes: &mut [u8], start: usize) -> Option<usize> {
-    let mut entries: Vec<&[u8]> = Vec::new();
-    let mut at = start;
-    while *bytes.get(at)? != 0 {
-        let name = bytes[at..].iter().position(|byte| *byte == 0)? + 1;
-        let kind = bytes[at + name..].iter().position(|byte| *byte == 0)? + 1;
-        let size = bytes.get(at + name + kind..at + name + kind + 4)?;
-        let size = u32::from_le_bytes([size[0], size[1], size[2], size[3]]) as usize;
-        let end = at + name + kind + 4 + size;
-        entries.push(bytes.get(at..end)?);
-        at = end;
-    }
-    entries.sort();
-    let sorted = entries.concat();
-    bytes[start..at].copy_from_slice(&sorted);
-    Some(at)
 }
 
 #[cfg(test)]

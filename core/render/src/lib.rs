@@ -14,6 +14,7 @@
 //! - [`paint`](mod@paint): painted regions and strokes, alone and below their drawing
 //! - [`stroke`]: strokes of varying width as areas
 //! - [`layers`]: OpenEXR files of any number of named channels
+//! - [`header`]: the headers of OpenEXR files
 //! - [`motion`]: contours between frames
 //! - [`grow`]: the outline moved outward or inward
 //! - [`feather`]: soft borders
@@ -52,6 +53,7 @@ pub mod cryptomatte;
 pub mod encode;
 pub mod feather;
 pub mod grow;
+pub mod header;
 pub mod ids;
 pub mod layers;
 pub mod line;

@@ -17,6 +17,8 @@ struct Rendering {
     format: Format,
     /// The footage, with the size of the pictures.
     size: Footage,
+    /// Width of the footage's pixels divided by their height.
+    aspect: f32,
     shown: Shown,
 }
 
@@ -80,7 +82,11 @@ fn picture(
             render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
         }
     };
-    bytes.map_err(|source| PipelineError::Encode { frame, source })
+    let mut bytes = bytes.map_err(|source| PipelineError::Encode { frame, source })?;
+    if plan.format == Format::Exr && plan.aspect != 1.0 {
+        render::header::set_pixel_aspect(&mut bytes, plan.aspect);
+    }
+    Ok(bytes)
 }
 
 fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Rendering, PipelineError> {
@@ -96,6 +102,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
         return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for {what}", job.output)));
     }
     let range = frames_of(footage, job.frames.clone())?;
+    let first = *range.start();
     let frames: Vec<(FrameNumber, PathBuf)> = match FramePattern::parse(&job.output) {
         Ok(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
         Err(PatternError::NoNumber { .. }) if range.start() == range.end() => {
@@ -114,6 +121,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
         parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
         format,
         size: sized(footage, job)?,
+        aspect: sequence.pixel_aspect(first),
         shown,
     })
 }

@@ -208,3 +208,27 @@ fn a_sheet_shows_strokes_and_paint() {
     assert!(line.iter().any(|value| *value < 200), "{line:?}");
     assert_eq!(sheet.get_pixel(9 + 33, 30 + 25).0, [255; 3]);
 }
+
+#[test]
+fn pictures_have_the_pixel_aspect_of_the_footage() {
+    let (folder, path) = project(drawn());
+    let text = fs::read_to_string(&path).unwrap().replace("f_%d.png", "f_%d.exr");
+    fs::write(&path, text).unwrap();
+    let aspect = b"pixelAspectRatio\0float\0\x04\0\0\0";
+    let place = |bytes: &[u8]| bytes.windows(aspect.len()).position(|own| own == aspect).unwrap() + aspect.len();
+    for frame in 0..2 {
+        let frame = folder.path().join(format!("f_{frame}.exr"));
+        ImageBuffer::from_pixel(40, 30, Rgb([1f32; 3])).save(&frame).unwrap();
+        let mut bytes = fs::read(&frame).unwrap();
+        let at = place(&bytes);
+        bytes[at..at + 4].copy_from_slice(&2f32.to_le_bytes());
+        fs::write(&frame, bytes).unwrap();
+    }
+    for what in ["cutout", "matte", "ids", "paint", "overlay"] {
+        let to = folder.path().join(format!("{what}.exr"));
+        let output = render(&path, &to, &["--what", what, "--frames", "1"]);
+        assert!(output.status.success(), "{}", told(&output));
+        let bytes = fs::read(to).unwrap();
+        assert_eq!(bytes[place(&bytes)..][..4], 2f32.to_le_bytes(), "{what}");
+    }
+}
