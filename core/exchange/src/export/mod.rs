@@ -25,7 +25,6 @@ pub mod svg;
 pub mod xml;
 
 pub use after_effects::after_effects;
-pub use names::renamed;
 pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;
@@ -50,6 +49,17 @@ pub fn has_falloff(extension: &str, falloff: Falloff) -> bool {
         "jsx" => falloff.rate == 1.0 && matches!(curve, FalloffCurve::Smooth | FalloffCurve::Linear),
         _ => falloff.is_plain(),
     }
+}
+
+/// The parts whose name a file with this extension cannot write, each with its name there.
+pub fn renamed<'a>(scene: &'a Scene, extension: &str) -> Vec<(&'a str, String)> {
+    let names = match extension {
+        "nk" => names::written(scene, nuke::plain),
+        "ntp" | "fxs" | "svg" => names::written(scene, xml::plain),
+        _ => return Vec::new(),
+    };
+    let both = scene.parts.iter().map(|part| part.name.as_str()).zip(names);
+    both.filter(|(name, written)| name != written).collect()
 }
 
 /// A coordinate to a ten-thousandth of a pixel, as scripts take it. A whole number has no point, and −0 is 0.
@@ -83,5 +93,19 @@ mod tests {
                 "{extension}"
             );
         }
+    }
+
+    #[test]
+    fn each_form_tells_the_names_that_it_changes() {
+        use rototoon_base::scene::{Footage, Part};
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let parts = ["a\"b", "a_b", "\u{1}", "c\u{2}"].map(|name| Part { name: name.into(), ..Part::default() });
+        let scene = Scene { footage, parts: parts.into() };
+        let nuke = [("a\"b", "a_b 2".into()), ("\u{1}", "_".into()), ("c\u{2}", "c_".into())];
+        assert_eq!(renamed(&scene, "nk"), nuke);
+        for extension in ["ntp", "fxs", "svg"] {
+            assert_eq!(renamed(&scene, extension), [("\u{1}", "part".into()), ("c\u{2}", "c".into())]);
+        }
+        assert_eq!(renamed(&scene, "jsx"), []);
     }
 }

@@ -3,7 +3,6 @@
 //! Some formats lack characters. A name that a format can write stays as it is. A name that it cannot write gets underscores or loses
 //! characters, and then a number if a part has that name already. So an import never takes one part for another.
 
-use super::{nuke, xml};
 use rototoon_base::scene::Scene;
 use std::collections::BTreeSet;
 
@@ -27,34 +26,18 @@ pub(super) fn written(scene: &Scene, form: impl Fn(&str) -> String) -> Vec<Strin
     own().map(&mut one).collect()
 }
 
-/// The parts whose name a file with this extension cannot write, each with its name there.
-pub fn renamed<'a>(scene: &'a Scene, extension: &str) -> Vec<(&'a str, String)> {
-    let names = match extension {
-        "nk" => written(scene, nuke::plain),
-        "ntp" | "fxs" | "svg" => written(scene, xml::plain),
-        _ => return Vec::new(),
-    };
-    let both = scene.parts.iter().map(|part| part.name.as_str()).zip(names);
-    both.filter(|(name, written)| name != written).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use rototoon_base::scene::{Footage, Part};
 
-    fn scene(names: &[&str]) -> Scene {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
-        let part = |name: &&str| Part { name: (*name).into(), ..Part::default() };
-        Scene { footage, parts: names.iter().map(part).collect() }
-    }
-
     #[test]
     fn names_that_can_be_written_stay_and_others_get_out_of_their_way() {
-        let scene = scene(&["a\"b", "a_b", "a{b", "a_b 2", "größe", "\u{1}", "c\u{2}"]);
-        assert_eq!(written(&scene, nuke::plain), ["a_b 3", "a_b", "a_b 4", "a_b 2", "größe", "_", "c_"]);
-        assert_eq!(renamed(&scene, "nk")[..2], [("a\"b", "a_b 3".into()), ("a{b", "a_b 4".into())]);
-        assert_eq!(renamed(&scene, "fxs"), [("\u{1}", "part".into()), ("c\u{2}", "c".into())]);
-        assert_eq!(renamed(&scene, "jsx"), []);
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let names = ["a\"b", "a_b", "a{b", "a_b 2", "größe", "\u{1}", "c\""];
+        let parts = names.map(|name| Part { name: name.into(), ..Part::default() }).into();
+        let form = |name: &str| name.replace(['"', '{'], "_").replace('\u{1}', "");
+        let found = written(&Scene { footage, parts }, form);
+        assert_eq!(found, ["a_b 3", "a_b", "a_b 4", "a_b 2", "größe", "part", "c_"]);
     }
 }

@@ -77,7 +77,10 @@ fn form(keys: &Keys, frame: FrameNumber) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    fn hidden(frames: &[FrameNumber], times: &[[f64; 2]]) -> Option<(Vec<(FrameNumber, f64)>, Vec<[FrameNumber; 2]>)> {
+    /// Keys with the x of their point, which is the frame at first.
+    type Found = (Vec<(FrameNumber, f64)>, Vec<[FrameNumber; 2]>);
+
+    fn hidden(frames: &[FrameNumber], times: &[[f64; 2]]) -> Option<Found> {
         let footage = Footage { pattern: "%d".into(), first: 1, last: 20, fps: 1.0, width: 9, height: 9 };
         let mut keys: Keys = frames.iter().map(|&frame| (frame, vec![Point::new(f64::from(frame), 0.0)])).collect();
         let absent = hide(&mut keys, times, &footage)?;
