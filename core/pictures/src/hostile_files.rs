@@ -4,6 +4,7 @@
 //! once more, which takes 9 s.
 
 use crate::{DecodeError, decode};
+use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, WritableImage};
 use image::{DynamicImage, ImageBuffer, ImageFormat, Rgb};
 use std::fs::File;
 use std::io::Cursor;
@@ -26,13 +27,24 @@ fn decoded(path: &Path) -> Result<Vec<[f32; 3]>, DecodeError> {
     decode(path, Some((23, 19))).map(|picture| picture.data().to_vec())
 }
 
+/// The drawing as a layer of a renderer's OpenEXR file.
+fn layered() -> Vec<u8> {
+    let picture = image::load_from_memory(&drawing(ImageFormat::Png)).unwrap().to_rgb32f();
+    let values = |colour: usize| FlatSamples::F32(picture.pixels().map(|pixel| pixel.0[colour]).collect());
+    let channel = |(k, name): (usize, &str)| AnyChannel::new(format!("ViewLayer.Combined.{name}").as_str(), values(k));
+    let channels = AnyChannels::sort(["R", "G", "B"].into_iter().enumerate().map(channel).collect());
+    let mut bytes = Cursor::new(Vec::new());
+    Image::from_channels((23, 19), channels).write().non_parallel().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
 #[test]
 fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
     use ImageFormat::{Bmp, Jpeg, OpenExr, Png, Tiff, WebP};
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frame");
-    for format in [Png, Jpeg, Tiff, Bmp, WebP, OpenExr] {
-        let whole = drawing(format);
+    let plain = [Png, Jpeg, Tiff, Bmp, WebP, OpenExr].map(|format| (format!("{format:?}"), drawing(format)));
+    for (format, whole) in plain.into_iter().chain([("layers of OpenEXR".to_owned(), layered())]) {
         std::fs::write(&path, &whole).unwrap();
         let pixels = decoded(&path).unwrap();
         let mut refused = 0;
@@ -41,13 +53,11 @@ fn a_file_cut_anywhere_gives_an_error_or_all_of_its_pixels() {
         for length in (0..whole.len()).rev() {
             file.set_len(length as u64).unwrap();
             match decoded(&path) {
-                Ok(found) => {
-                    assert!(found == pixels, "{format:?}: {length} of {} bytes give other pixels", whole.len())
-                }
+                Ok(found) => assert!(found == pixels, "{format}: {length} of {} bytes give other pixels", whole.len()),
                 Err(_) => refused += 1,
             }
         }
-        assert!(refused * 10 >= whole.len() * 9, "{format:?}: refused {refused} of {} lengths", whole.len());
+        assert!(refused * 10 >= whole.len() * 9, "{format}: refused {refused} of {} lengths", whole.len());
     }
 }
 

@@ -110,6 +110,9 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
             )));
         }
     };
+    if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
+        return Err(Failure::Told(format!("export file: {nothing}")));
+    }
     write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))?;
     if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {
         instance(effect)?.note(effect, &warning, false);
