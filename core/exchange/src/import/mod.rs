@@ -82,10 +82,14 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
     for (place, part) in scene.parts.iter().enumerate() {
         places.entry(part.name.clone()).or_insert(place);
     }
+    // Files have no blanks at the ends of names.
+    for (place, part) in scene.parts.iter().enumerate() {
+        places.entry(part.name.trim().to_owned()).or_insert(place);
+    }
     for Shape { name, closed, keys, absent, falloff } in shapes {
         if let Some(&place) = places.get(&name) {
             let part = &mut scene.parts[place];
-            let (depth, colour) = (part.depth, part.colour);
+            let (name, depth, colour) = (std::mem::take(&mut part.name), part.depth, part.colour);
             *part = Part { name, closed, keys, absent, falloff, depth, colour, ..Part::default() };
         } else {
             places.insert(name.clone(), scene.parts.len());
@@ -121,5 +125,8 @@ mod tests {
         let found: Vec<_> = scene.parts.iter().map(|part| (part.name.as_str(), part.depth)).collect();
         assert_eq!(found, [("arm", 3.5), ("leg", 4.0), ("head", 5.0)]);
         assert!(scene.parts[0].tracks.is_empty() && scene.parts[0].closed);
+        scene.parts[2].name = "head ".into();
+        into_scene(&mut scene, vec![shape("head")]);
+        assert_eq!((scene.parts.len(), scene.parts[2].name.as_str()), (3, "head "));
     }
 }
