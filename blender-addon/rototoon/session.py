@@ -59,6 +59,7 @@ class Session:
         """Writes the document. The file is complete, or it does not appear.
 
         If the file is in another folder than the session, a relative footage pattern is rewritten to name the same files.
+        A frame of the footage is refused as a name.
         """
         self._handle.call("rototoon_session_save", *text(os.fspath(path)))
 

@@ -3,13 +3,40 @@
 //! `event` is `begin`, `step`, `shot` or `end`. A line has no date: machines of a farm disagree about it. Several workers
 //! may write to one file; each line is written at once. If somebody opened the file in another program and saved it
 //! without a line end, a new line is begun first. Nothing is ever read back from it.
+//!
+//! Lines are added to a report only, never to another file. A report is known by how its first line begins. Spreadsheets
+//! put a mark before it and double its quotes, so these are not looked at.
 
 use rototoon::project::WriteError;
 use serde_json::Value;
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{Error, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+
+/// What the first line of a report begins with, without quotes.
+const BEGIN: &str = "{event:";
+/// Number of bytes that are read of a file to know it as a report.
+const LOOKED_AT: u64 = 64;
+
+/// Checks that a file may get the lines of a report: it is one, it is empty, or nothing is there.
+///
+/// # Errors
+///
+/// It is another file.
+pub fn check(path: &Path) -> Result<(), WriteError> {
+    // Pipes and devices have no lines. What cannot be read is found when it is opened.
+    let regular = std::fs::metadata(path).is_ok_and(|data| data.is_file());
+    let Some(file) = regular.then(|| File::open(path).ok()).flatten() else { return Ok(()) };
+    let mut begin = Vec::new();
+    let failed = |source| WriteError { path: path.to_owned(), source };
+    file.take(LOOKED_AT).read_to_end(&mut begin).map_err(failed)?;
+    let text = String::from_utf8_lossy(&begin).replace(['\u{feff}', '"'], "");
+    if begin.is_empty() || text.starts_with(BEGIN) {
+        return Ok(());
+    }
+    Err(failed(Error::other("found a file that is no report of a batch, expected one or a name that is free")))
+}
 
 /// Where the lines go.
 #[derive(Debug)]
@@ -23,8 +50,9 @@ impl Report {
     ///
     /// # Errors
     ///
-    /// The file cannot be opened for writing.
+    /// The file is no report, or cannot be opened for writing.
     pub fn open(path: &Path) -> Result<Self, WriteError> {
+        check(path)?;
         let failed = |source| WriteError { path: path.to_owned(), source };
         let mut file = OpenOptions::new().create(true).append(true).read(true).open(path).map_err(failed)?;
         if !ends_with_line(&mut file) {
@@ -62,9 +90,9 @@ mod tests {
     fn lines_are_added_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.jsonl");
-        Report::open(&path).unwrap().line(&json!({"a": 1})).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "{\"a\":1}\n");
-        std::fs::write(&path, "a;1").unwrap();
+        Report::open(&path).unwrap().line(&json!({"event": 1})).unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "{\"event\":1}\n");
+        std::fs::write(&path, "\"{\"\"event\"\":1}\"").unwrap();
         let report = Report::open(&path).unwrap();
         std::thread::scope(|scope| {
             for k in 0..4 {
@@ -74,7 +102,21 @@ mod tests {
         });
         let text = std::fs::read_to_string(&path).unwrap();
         let lines: Vec<_> = text.lines().collect();
-        assert_eq!((lines[0], lines.len()), ("a;1", 201));
+        assert_eq!((lines[0], lines.len()), ("\"{\"\"event\"\":1}\"", 201));
         assert!(lines[1..].iter().all(|line| serde_json::from_str::<Value>(line).is_ok()));
+    }
+
+    #[test]
+    fn files_that_are_no_report_get_no_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("frame.png");
+        for bytes in [&b"\x89PNG\r\n\x1a\n"[..], b"{\"rototoon_batch\": 1}", b"[]", b"\n"] {
+            std::fs::write(&path, bytes).unwrap();
+            let error = Report::open(&path).unwrap_err().to_string();
+            assert!(error.contains("frame.png") && error.contains("no report"), "{error}");
+            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+        }
+        std::fs::write(&path, "").unwrap();
+        assert!(Report::open(&path).is_ok());
     }
 }

@@ -7,8 +7,8 @@ use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
-use rototoon::project::Document;
 use rototoon::project::fills::FillClicks;
+use rototoon::project::{Document, Inputs};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
 use rototoon::snap::{CorridorWidth, Follow, SnapError, SnapOptions, snap_scene};
@@ -84,8 +84,10 @@ impl Session {
     }
 
     /// Writes the document. If `path` is not in the session's folder, a relative footage pattern is rewritten so that it
-    /// names the same files.
+    /// names the same files. A frame of the footage is refused as `path`; the project file may be written over.
     pub fn save(&self, path: &Path) -> Result<(), Failure> {
+        let inputs = Inputs::default().footage(&self.document.scene.footage, &self.folder);
+        inputs.check(path).map_err(Failure::error)?;
         let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
         pipeline::relocate(&mut document, &self.folder, target.parent().unwrap_or(&self.folder));

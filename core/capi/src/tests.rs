@@ -1,6 +1,7 @@
 //! Tests of the ABI from the side of a foreign caller: pointers, statuses, texts.
 
 mod fills;
+mod saving;
 
 use crate::callback::RototoonProgress;
 use crate::edit;

@@ -9,9 +9,9 @@ use rototoon::project::Inputs;
 use rototoon::scene::FrameNumber;
 use rototoon_batch::budget::Budget;
 use rototoon_batch::manifest::{Manifest, Shot};
-use rototoon_batch::page;
 use rototoon_batch::run::{self, BatchError, Options};
 use rototoon_batch::summary::{Outcome, Summary};
+use rototoon_batch::{page, report};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -120,6 +120,12 @@ pub fn load(path: &Path) -> Result<Manifest, Failure> {
     Manifest::load(path, &check_words).map_err(|error| Failure::Use(error.to_string()))
 }
 
+/// The files that a manifest names.
+pub fn named(path: &Path, manifest: &Manifest) -> Inputs {
+    let files = manifest.shots.iter().flat_map(|shot| std::iter::once(&shot.project).chain(&shot.blend));
+    files.fold(Inputs::default().file(path), |inputs, file| inputs.file(file))
+}
+
 fn work(
     given: &ArgMatches,
     manifest: &Manifest,
@@ -127,8 +133,9 @@ fn work(
     (path, folder): (&Path, &Path),
 ) -> Result<Vec<Outcome>, Failure> {
     let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join("report.jsonl"));
-    let inputs = manifest.shots.iter().fold(Inputs::default().file(path), |inputs, shot| inputs.file(&shot.project));
-    inputs.check(&report)?;
+    named(path, manifest).check(&report)?;
+    // This keeps frames safe too.
+    report::check(&report).map_err(|error| Failure::Use(error.to_string()))?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let asked = |id: &str| given.get_one::<u16>(id).map_or(0, |number| usize::from(*number));
     let jobs = if asked("jobs") == 0 { cores } else { asked("jobs") }.min(shots.len()).max(1);

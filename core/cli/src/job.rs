@@ -6,8 +6,10 @@ use crate::{arguments, project};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::project::output::moved_pattern;
-use rototoon::project::{Inputs, write_whole};
+use rototoon::project::{Document, Inputs, write_whole};
 use rototoon_batch::jobs::{flamenco, opencue, openjd};
+use rototoon_batch::manifest::Manifest;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// The subcommand.
@@ -55,8 +57,10 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (path, to) = (arguments::path(given, "manifest"), arguments::path(given, "output"));
     let manifest = batch::load(path)?;
-    let inputs = manifest.shots.iter().fold(Inputs::default().file(path), |inputs, shot| inputs.file(&shot.project));
-    inputs.check(to)?;
+    // Commonly nothing is there yet, and the frames of a season are many.
+    if to.exists() {
+        frames(&manifest, batch::named(path, &manifest)).check(to)?;
+    }
     let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (count, chunk) = (manifest.shots.len(), given.get_one::<u16>("chunk").map_or(1, |chunk| usize::from(*chunk)));
     let text = match arguments::choice(given, "for") {
@@ -72,6 +76,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         }
     };
     Ok(write_whole(to, text.as_bytes())?)
+}
+
+/// Adds the frames of all footage. Those of a document that cannot be read are not known.
+fn frames(manifest: &Manifest, inputs: Inputs) -> Inputs {
+    let projects: BTreeSet<&Path> = manifest.shots.iter().map(|shot| shot.project.as_path()).collect();
+    projects.into_iter().fold(inputs, |inputs, project| match Document::load(project) {
+        Ok(document) => inputs.footage(&document.scene.footage, project::folder(project)),
+        Err(_) => inputs,
+    })
 }
 
 /// A path relative to the folder of the template, with forward slashes; `None` if there is none.

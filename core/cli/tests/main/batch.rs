@@ -182,12 +182,16 @@ fn the_status_says_that_keys_are_wanted() {
 #[test]
 fn wrong_manifests_and_requests_end_before_any_work() {
     let season = Season::new(2);
+    fs::write(season.path("notes.txt"), "mine").unwrap();
+    let before = fs::read(season.path("in/sh0/f_001.png")).unwrap();
     for (more, expected) in [
         (["--shots", "0-1"], "expected places from 1 to 2"),
         (["--shots", "2-9"], "expected places from 1 to 2"),
         (["--shot", "sh9"], "--shot: found \"sh9\", expected one of \"sh0\", \"sh1\""),
         (["--memory", "0"], "expected a positive number"),
         (["--report", "in/sh0/project.json"], "the command reads"),
+        (["--report", "in/sh0/f_001.png"], "f_001.png: cannot write: found a file that is no report"),
+        (["--report", "notes.txt"], "notes.txt: cannot write: found a file that is no report"),
     ] {
         let output = season.run(&more);
         let said = String::from_utf8(output.stderr).unwrap();
@@ -204,6 +208,8 @@ fn wrong_manifests_and_requests_end_before_any_work() {
         assert!(output.status.code() == Some(2) && said.contains(expected), "{said}");
     }
     assert!(!season.path("out").exists());
+    assert_eq!(fs::read_to_string(season.path("notes.txt")).unwrap(), "mine");
+    assert_eq!(fs::read(season.path("in/sh0/f_001.png")).unwrap(), before);
 }
 
 #[test]
@@ -293,6 +299,11 @@ fn jobs_are_written_for_farms() {
     assert_eq!((default(&template, 0), default(&template, 1)), (json!("../m.json"), json!("night")));
     assert_eq!(job(&["-o", "rototoon.js", "--for", "flamenco"]).0, Some(0));
     assert!(fs::read_to_string(season.path("rototoon.js")).unwrap().contains("function compileJob(job)"));
-    let (status, said) = job(&["-o", "in/sh0/project.json"]);
-    assert!(status == Some(2) && said.contains("the command reads"), "{said}");
+    let before = fs::read(season.path("in/sh0/f_001.png")).unwrap();
+    for input in ["in/sh0/project.json", "in/sh0/f_001.png", "in/../in/sh1/f_000.png", "m.json"] {
+        let (status, said) = job(&["-o", input]);
+        assert!(status == Some(2) && said.contains("the command reads"), "{input}: {said}");
+    }
+    assert_eq!(fs::read(season.path("in/sh0/f_001.png")).unwrap(), before);
+    assert_eq!(job(&["-o", "job.json"]).0, Some(0), "a template may be written anew");
 }
