@@ -12,7 +12,8 @@
 
 use crate::step::{self, Step};
 use rototoon::file;
-use rototoon::project::described;
+use rototoon::project::{Document, described};
+use rototoon::scene::Footage;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -78,7 +79,8 @@ impl Manifest {
     /// # Errors
     ///
     /// A [`ManifestError`] with every problem: the file cannot be read, is no manifest or one of a later version; a step
-    /// or an option is unknown; names are missing, unsafe or used twice; two steps of a shot write the same file.
+    /// or an option is unknown; names are missing, unsafe or used twice; two steps of a shot write the same file; the pictures
+    /// of a shot would get one name.
     pub fn load(path: &Path, check: CheckWords) -> Result<Self, ManifestError> {
         let failed = |problems| ManifestError { path: path.to_owned(), problems };
         let text = file::text(path).map_err(|error| failed(vec![error.to_string()]))?;
@@ -127,7 +129,10 @@ impl Reader<'_> {
             self.problems.push(format!("shots: found {} shots, expected 1 to {MOST_SHOTS}", list.len()));
             return Vec::new();
         }
-        list.iter().enumerate().filter_map(|(index, value)| self.shot(index, value, common)).collect()
+        let shots: Vec<_> =
+            list.iter().enumerate().filter_map(|(index, value)| self.shot(index, value, common)).collect();
+        self.problems.extend(shots.iter().find_map(one_name_for_many));
+        shots
     }
 
     fn shot(&mut self, index: usize, value: &Value, common: &[Step]) -> Option<Shot> {
@@ -209,6 +214,18 @@ impl Reader<'_> {
             self.problems.push(format!("{place}{name}: not a field of a manifest; known are {}", known.join(", ")));
         }
     }
+}
+
+/// The problem of a shot whose pictures would all get one name. Its document is read only where a step has such a name, to know
+/// how many pictures there are.
+fn one_name_for_many(shot: &Shot) -> Option<String> {
+    let step = shot.steps.iter().find(|step| step.names_one_picture())?;
+    // A document that cannot be read is the shot's failure, and told there.
+    let Footage { first, last, .. } = Document::load(&shot.project).ok()?.scene.footage;
+    let (name, file) = (&shot.name, step.output.as_deref().unwrap_or_default());
+    let expected = "a place for the frame's number, such as %04d";
+    (first != last)
+        .then(|| format!("shot {name:?}: render: to: found {file:?} for frames {first} to {last}, expected {expected}"))
 }
 
 /// Checks a name that becomes that of a file or folder on any system.

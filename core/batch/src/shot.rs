@@ -255,7 +255,8 @@ impl Work<'_> {
                 Program::start(self.worker.program, &self.folder, lock, self.worker.keep).map_err(failed)?
             }
         };
-        let ended = program.step(&words, &self.worker.stop).map_err(failed)?;
+        let mut ended = program.step(&words, &self.worker.stop).map_err(failed)?;
+        ended.messages.iter_mut().for_each(|message| *message = with_final_names(message));
         self.program = Some(program);
         Ok(ended)
     }
@@ -375,6 +376,12 @@ fn failure(step: &Step, ended: &Ended) -> String {
     format!("{}: {why}", step.name())
 }
 
+/// A message as if the files had their names already.
+fn with_final_names(message: &str) -> String {
+    let named = |text: String, separator| text.replace(&format!("{separator}{NEW}"), separator);
+    ["/", "\\"].into_iter().fold(message.to_owned(), named)
+}
+
 /// A folder with a separator at its end, as text.
 fn folder_text(folder: &Path) -> String {
     folder.join("").to_string_lossy().into_owned()
@@ -383,4 +390,20 @@ fn folder_text(folder: &Path) -> String {
 /// A path that means the same in any folder.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_have_the_final_names_of_files() {
+        for (said, told) in [
+            ("error: /o/sh1/.new-m.fbx: no", "error: /o/sh1/m.fbx: no"),
+            ("error: C:\\o\\.new-m.fbx: no", "error: C:\\o\\m.fbx: no"),
+            ("note: a.new-b", "note: a.new-b"),
+        ] {
+            assert_eq!(with_final_names(said), told);
+        }
+    }
 }

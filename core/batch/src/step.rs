@@ -5,6 +5,7 @@
 
 use crate::manifest::safe_name;
 use rototoon::project::described;
+use rototoon::scene::{FramePattern, PatternError};
 use serde_json::Value;
 
 /// What a step does.
@@ -85,6 +86,13 @@ impl Step {
     /// Whether it reads the frames of the footage.
     pub fn reads_footage(&self) -> bool {
         !matches!(self.kind, Kind::Export | Kind::Tween)
+    }
+
+    /// Whether it draws all frames of the document under a plain name, which is enough for one.
+    pub fn names_one_picture(&self) -> bool {
+        let plain = |name: &String| matches!(FramePattern::parse(name), Err(PatternError::NoNumber { .. }));
+        let all = !self.options.iter().any(|option| option.starts_with("--frames="));
+        self.kind == Kind::Render && all && self.output.as_ref().is_some_and(plain)
     }
 
     /// Whether it writes a document that later steps read.

@@ -1,7 +1,7 @@
 //! `rototoon batch`: works through many shots.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, render};
+use crate::{arguments, export, progress, render};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::memory::Bytes;
@@ -195,11 +195,16 @@ fn check_words(words: &[String]) -> Result<(), String> {
     let commands = super::subcommands();
     let known = commands.iter().find(|(command, _)| words.first().is_some_and(|word| command.get_name() == word));
     let Some((command, _)) = known else { return Err(format!("found no subcommand {:?}", words.first())) };
-    command.clone().try_get_matches_from(words).map(|_| ()).map_err(|error| {
+    let given = command.clone().try_get_matches_from(words).map_err(|error| {
         let text = error.to_string();
         let first = text.lines().next().unwrap_or_default();
         first.strip_prefix("error: ").unwrap_or(first).to_owned()
-    })
+    })?;
+    match command.get_name() {
+        "render" => render::check(&given),
+        "export" => export::check(&given),
+        _ => Ok(()),
+    }
 }
 
 fn tell(shot: &Shot, outcome: &Outcome, ended: usize, all: usize) {

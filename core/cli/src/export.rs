@@ -20,9 +20,9 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Export))
 }
 
-/// Runs the subcommand.
-pub fn run(given: &ArgMatches) -> Result<(), Failure> {
-    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+/// The kind of file: the end of the output's name in small letters.
+fn extension(given: &ArgMatches) -> Result<String, Failure> {
+    let to = arguments::path(given, "output");
     let extension = to.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
     if !["svg", "nk", "ntp", "py", "jsx", "fxs", "json"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!(
@@ -30,6 +30,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             to.display()
         )));
     }
+    Ok(extension)
+}
+
+/// What is wrong with the options, whatever the document.
+pub fn check(given: &ArgMatches) -> Result<(), String> {
+    extension(given).map(drop).map_err(|failure| failure.to_string())
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
+    let extension = extension(given)?;
     let document = project::load_either(from)?;
     let inputs = project::inputs(&document, from);
     if extension == "json" {

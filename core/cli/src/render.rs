@@ -32,16 +32,15 @@ pub fn command() -> Command {
         .args(arguments::of_stage(Stage::Run))
 }
 
-/// Runs the subcommand.
-pub fn run(given: &ArgMatches) -> Result<(), Failure> {
-    let from = arguments::path(given, "project");
+/// What the options ask for.
+fn job(given: &ArgMatches) -> Result<RenderJob, Failure> {
     let output = arguments::path(given, "output");
     let output = output.to_str().ok_or_else(|| Failure::Use(format!("{}: expected UTF-8 text", output.display())))?;
     let (layers, parts) = (arguments::flag(given, "layers"), arguments::flag(given, "multipart"));
     if layers && parts {
         return Err(Failure::Use("found --layers on and --multipart on: expected one of them".to_owned()));
     }
-    let job = RenderJob {
+    Ok(RenderJob {
         picture: match arguments::choice(given, "what") {
             "matte" if layers => Picture::Layers,
             "matte" if parts => Picture::Parts,
@@ -62,7 +61,20 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         parts: given.get_many::<String>("parts").map(|names| names.cloned().collect()),
         scale: arguments::number(given, "scale"),
         output: output.to_owned(),
-    };
+    })
+}
+
+/// What is wrong with the options, whatever the document.
+pub fn check(given: &ArgMatches) -> Result<(), String> {
+    let job = job(given).map_err(|failure| failure.to_string())?;
+    job.check().map_err(|error| error.to_string())
+}
+
+/// Runs the subcommand.
+pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    let from = arguments::path(given, "project");
+    let job = job(given)?;
+    let output = job.output.as_str();
     let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     check_writable(&probed(output))?;

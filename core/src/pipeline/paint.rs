@@ -146,10 +146,7 @@ fn regions_of(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<FilledReg
 ///
 /// [`PipelineError::Option`] for another size of pictures that show the footage.
 pub(super) fn sized(footage: &Footage, job: &RenderJob) -> Result<Footage, PipelineError> {
-    if job.scale != 1.0 && !job.picture.has_any_size() {
-        let reason = format!("found {}, expected 1: only paint, lines and cel are drawn in other sizes", job.scale);
-        return Err(PipelineError::option("scale", reason));
-    }
+    job.check_scale()?;
     let size = |pixels: usize| ((pixels as f64 * job.scale).round() as usize).max(1);
     Ok(Footage { width: size(footage.width), height: size(footage.height), ..footage.clone() })
 }

@@ -1,8 +1,13 @@
 //! What is to be rendered of a document.
+//!
+//! What is wrong with a job in itself is told apart from what does not fit a document, because a batch asks for the former long
+//! before there is a document to draw.
 
-use crate::render::OverlayOptions;
-use crate::scene::FrameNumber;
+use super::PipelineError;
+use crate::render::{Format, OverlayOptions};
+use crate::scene::{FrameNumber, FramePattern, PatternError};
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 /// The picture to render of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,4 +66,48 @@ pub struct RenderJob {
     /// The output path, ending in `.png` or `.exr`: a pattern with one `%d` or `%0Nd`, or a plain path for a single
     /// frame.
     pub output: String,
+}
+
+impl RenderJob {
+    /// Checks what holds for every document: whether name, kind of file and size fit the picture.
+    ///
+    /// # Errors
+    ///
+    /// [`PipelineError::Request`] or [`PipelineError::Option`].
+    pub fn check(&self) -> Result<(), PipelineError> {
+        self.format()?;
+        // Without a range the document says how many frames there are.
+        self.pattern(self.frames.as_ref().is_none_or(|range| range.start() == range.end()))?;
+        self.check_scale()
+    }
+
+    /// The kind of file, by the end of its name.
+    pub(super) fn format(&self) -> Result<Format, PipelineError> {
+        let expected =
+            |what: &str| PipelineError::Request(format!("{}: expected a name that ends in {what}", self.output));
+        let format = Format::of(Path::new(&self.output)).ok_or_else(|| expected(".png or .exr"))?;
+        match self.picture {
+            Picture::Layers if format != Format::Exr => Err(expected(".exr for layers")),
+            Picture::Parts if format != Format::Exr => Err(expected(".exr for several parts")),
+            _ => Ok(format),
+        }
+    }
+
+    /// The pattern of the files; `None` for a plain name, which is enough for `one` frame.
+    pub(super) fn pattern(&self, one: bool) -> Result<Option<FramePattern>, PipelineError> {
+        match FramePattern::parse(&self.output) {
+            Ok(pattern) => Ok(Some(pattern)),
+            Err(PatternError::NoNumber { .. }) if one => Ok(None),
+            Err(error) => Err(PipelineError::Request(format!("output {error}"))),
+        }
+    }
+
+    /// Whether the picture can have the size.
+    pub(super) fn check_scale(&self) -> Result<(), PipelineError> {
+        if self.scale == 1.0 || self.picture.has_any_size() {
+            return Ok(());
+        }
+        let reason = format!("found {}, expected 1: only paint, lines and cel are drawn in other sizes", self.scale);
+        Err(PipelineError::option("scale", reason))
+    }
 }

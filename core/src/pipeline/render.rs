@@ -6,7 +6,7 @@ use super::{PipelineError, frames, frames_of, memory};
 use crate::pictures::Sequence;
 use crate::project::{Document, Inputs, write_whole};
 use crate::render::{self, Format};
-use crate::scene::{Footage, FrameNumber, FramePattern, FrameSource, PatternError, Progress, Scene};
+use crate::scene::{Footage, FrameNumber, FrameSource, Progress, Scene};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
@@ -91,24 +91,12 @@ fn picture(
 
 fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Rendering, PipelineError> {
     let footage = &document.scene.footage;
-    let format = Format::of(Path::new(&job.output))
-        .ok_or_else(|| PipelineError::Request(format!("{}: expected a name that ends in .png or .exr", job.output)))?;
-    let needs_exr = match job.picture {
-        Picture::Layers => Some("layers"),
-        Picture::Parts => Some("several parts"),
-        _ => None,
-    };
-    if let Some(what) = needs_exr.filter(|_| format != Format::Exr) {
-        return Err(PipelineError::Request(format!("{}: expected a name that ends in .exr for {what}", job.output)));
-    }
+    let format = job.format()?;
     let range = frames_of(footage, job.frames.clone())?;
     let first = *range.start();
-    let frames: Vec<(FrameNumber, PathBuf)> = match FramePattern::parse(&job.output) {
-        Ok(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
-        Err(PatternError::NoNumber { .. }) if range.start() == range.end() => {
-            vec![(*range.start(), PathBuf::from(&job.output))]
-        }
-        Err(error) => return Err(PipelineError::Request(format!("output {error}"))),
+    let frames: Vec<(FrameNumber, PathBuf)> = match job.pattern(first == *range.end())? {
+        Some(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
+        None => vec![(first, PathBuf::from(&job.output))],
     };
     let inputs = Inputs::default().footage(footage, sequence.folder());
     for (frame, path) in &frames {

@@ -197,15 +197,29 @@ fn wrong_manifests_and_requests_end_before_any_work() {
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && said.contains(expected), "{more:?}: {said}");
     }
+    let track = json!({"do": "track"});
     for (steps, expected) in [
         (json!([{"do": "track", "preset": "magic"}]), "steps[0]: invalid value 'magic'"),
         (json!([{"do": "snap", "colour": 3}]), "steps[0]: unexpected argument '--colour'"),
         (json!([{"do": "trak"}]), "steps[0]: do: found \"trak\""),
+        (json!([track, {"do": "export", "to": "m.fbx"}]), "steps[1]: m.fbx: expected a name that ends in .svg"),
+        (
+            json!([track, {"do": "render", "to": "m_%04d.jpg"}]),
+            "steps[1]: m_%04d.jpg: expected a name that ends in .png",
+        ),
+        (json!([track, {"do": "render", "to": "m_%x.png"}]), "steps[1]: output pattern \"m_%x.png\" has \"%x"),
+        (json!([track, {"do": "render", "to": "m.png", "frames": "1-3"}]), "steps[1]: output pattern \"m.png\" has no"),
+        (json!([track, {"do": "render", "what": "matte", "layers": "on", "to": "m_%04d.png"}]), ".exr for layers"),
+        (json!([track, {"do": "render", "what": "matte", "scale": 2, "to": "m_%04d.png"}]), "steps[1]: scale: found 2"),
+        (
+            json!([track, {"do": "render", "what": "matte", "to": "m.####.exr"}]),
+            "\"sh0\": render: to: found \"m.####.exr\" for frames 0 to 4",
+        ),
     ] {
         season.manifest(&steps, 2);
         let output = season.run(&[]);
         let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(2) && said.contains(expected), "{said}");
+        assert!(output.status.code() == Some(2) && said.contains(expected), "{expected}: {said}");
     }
     assert!(!season.path("out").exists());
     assert_eq!(fs::read_to_string(season.path("notes.txt")).unwrap(), "mine");

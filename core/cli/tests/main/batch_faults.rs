@@ -140,3 +140,12 @@ fn a_report_that_a_spreadsheet_saved_is_written_on() {
     assert!(new.clone().count() > 5 && new.clone().all(|line| serde_json::from_str::<Value>(line).is_ok()));
     assert!(!fs::read_to_string(season.path("out/index.html")).unwrap().is_empty());
 }
+
+#[test]
+fn one_picture_may_have_a_plain_name() {
+    let season = Season::new(1);
+    let render = |frames: &str| json!([{"do": "render", "what": "matte", "to": "m.png", "frames": frames}]);
+    season.manifest(&render("3"), 1);
+    season.good(&[]);
+    assert!(season.path("out/sh0/m.png").is_file());
+}
