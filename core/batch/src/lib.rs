@@ -9,6 +9,7 @@
 //! - [`digest`]: hashes of what a step reads
 //! - [`record`]: what was done for a shot, so that it is not done again
 //! - [`lock`]: one worker a shot
+//! - [`queue`]: free shots first, locked ones later
 //! - [`child`]: starts the command line program for the steps of a shot
 //! - [`answer`]: what the two say to each other
 //! - [`shot`]: all steps of a shot
@@ -38,6 +39,7 @@ pub mod jobs;
 pub mod lock;
 pub mod manifest;
 pub mod page;
+pub mod queue;
 pub mod record;
 pub mod report;
 pub mod run;

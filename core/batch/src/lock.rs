@@ -11,46 +11,30 @@ use rototoon::project::WriteError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;
-use std::thread::sleep;
-use std::time::Duration;
 
 /// Name of the file. It stays: if it were removed, two workers could hold two locks.
 pub const LOCK: &str = ".lock";
-/// Time between two attempts.
-const PAUSE: Duration = Duration::from_millis(50);
 
 /// A lock on a shot's folder.
 #[derive(Debug)]
 pub struct Lock(File);
 
 impl Lock {
-    /// Waits until no other worker holds the folder, or until `stop` is true. `waiting` is called once before a wait.
+    /// Takes the folder; `None` if another worker has it.
     ///
     /// # Errors
     ///
-    /// The file cannot be made. `None` if stopped.
-    pub fn wait(folder: &Path, stop: &dyn Fn() -> bool, waiting: &dyn Fn()) -> Result<Option<Self>, WriteError> {
+    /// The file cannot be made.
+    pub fn take(folder: &Path) -> Result<Option<Self>, WriteError> {
         let path = folder.join(LOCK);
         let failed = |source: io::Error| WriteError { path: path.clone(), source };
         let file =
             OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path).map_err(failed)?;
-        let mut told = false;
-        loop {
-            match file.try_lock() {
-                Ok(()) => return Ok(Some(Self(file))),
-                Err(TryLockError::WouldBlock) if stop() => return Ok(None),
-                Err(TryLockError::WouldBlock) => {
-                    if !told {
-                        waiting();
-                    }
-                    told = true;
-                    sleep(PAUSE);
-                }
-                Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
-                    return Ok(Some(Self(file)));
-                }
-                Err(TryLockError::Error(error)) => return Err(failed(error)),
-            }
+        match file.try_lock() {
+            Ok(()) => Ok(Some(Self(file))),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(Some(Self(file))),
+            Err(TryLockError::Error(error)) => Err(failed(error)),
         }
     }
 
@@ -69,16 +53,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_second_worker_waits_until_every_handle_is_closed() {
+    fn a_folder_is_free_when_every_handle_is_closed() {
         let folder = tempfile::tempdir().unwrap();
-        let never = || false;
-        let at_once = || true;
-        let first = Lock::wait(folder.path(), &never, &|| panic!("nobody holds it")).unwrap().unwrap();
+        let first = Lock::take(folder.path()).unwrap().unwrap();
+        assert!(Lock::take(folder.path()).unwrap().is_none());
         let shared = first.shared().unwrap();
         drop(first);
-        assert!(Lock::wait(folder.path(), &at_once, &|| {}).unwrap().is_none(), "the program still runs");
+        assert!(Lock::take(folder.path()).unwrap().is_none(), "the program still runs");
         drop(shared);
-        assert!(Lock::wait(folder.path(), &at_once, &|| {}).unwrap().is_some());
-        assert!(Lock::wait(&folder.path().join("none"), &never, &|| {}).is_err());
+        assert!(Lock::take(folder.path()).unwrap().is_some());
+        assert!(Lock::take(&folder.path().join("none")).is_err());
     }
 }

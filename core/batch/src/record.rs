@@ -105,13 +105,18 @@ impl Record {
 
     /// Seconds of processors of all steps.
     pub fn processor_seconds(&self) -> f64 {
-        self.steps.iter().map(|done| done.processor_seconds).sum()
+        sum(self.steps.iter().map(|done| done.processor_seconds))
     }
 
     /// Seconds of all steps.
     pub fn seconds(&self) -> f64 {
-        self.steps.iter().map(|done| done.seconds).sum()
+        sum(self.steps.iter().map(|done| done.seconds))
     }
+}
+
+/// A sum that is 0 for nothing; that of the standard library is −0, which shows in a report.
+fn sum(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |sum, value| sum + value)
 }
 
 fn set_aside(folder: &Path, path: &Path) -> Result<PathBuf, WriteError> {

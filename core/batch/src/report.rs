@@ -72,6 +72,11 @@ impl Report {
     }
 }
 
+/// A number of a report: three places are enough for seconds and for confidence.
+pub fn rounded(value: f64) -> f64 {
+    (value * 1000.0).round() / 1000.0
+}
+
 fn ends_with_line(file: &mut File) -> bool {
     let mut last = [b'\n'];
     // An empty file has no last byte.

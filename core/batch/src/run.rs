@@ -3,8 +3,9 @@
 use crate::budget::{Budget, estimate, kept};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, Shot};
+use crate::queue::{Place, Queue};
 use crate::record::Record;
-use crate::report::Report;
+use crate::report::{Report, rounded};
 use crate::shot::{self, ShotError, StepEnd, Worker};
 use crate::summary::Outcome;
 use rototoon::project::{Document, WriteError};
@@ -13,6 +14,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::sleep;
+use std::time::Duration;
+
+/// Time between two attempts at shots that other workers have.
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// How to run a batch.
 pub struct Options<'a> {
@@ -32,6 +38,8 @@ pub struct Options<'a> {
     pub report: PathBuf,
     /// Whether the batch was asked to end.
     pub stop: &'a (dyn Fn() -> bool + Sync),
+    /// Is told of each shot that another worker has when no other is left.
+    pub waits: &'a (dyn Fn(&Shot) + Sync),
     /// Is told of each shot that ended, with the number of shots that have.
     pub told: &'a (dyn Fn(&Shot, &Outcome, usize) + Sync),
 }
@@ -47,7 +55,7 @@ pub enum BatchError {
     Stopped,
 }
 
-/// Works through the shots of a manifest. A shot that fails does not stop the others.
+/// Works through the shots of a manifest. A shot that fails does not stop the others, nor does one that another worker has.
 ///
 /// # Errors
 ///
@@ -55,67 +63,108 @@ pub enum BatchError {
 pub fn run(manifest: &Manifest, options: &Options) -> Result<Vec<Outcome>, BatchError> {
     make_folder(&options.folder)?;
     let report = Report::open(&options.report)?;
+    let count = options.shots.len();
     report.line(&json!({
-        "event": "begin", "shots": options.shots.len(), "jobs": options.jobs, "memory_bytes": options.memory.bytes()
+        "event": "begin", "shots": count, "jobs": options.jobs, "memory_bytes": options.memory.bytes()
     }))?;
-    let (next, ended) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let outcomes: Mutex<Vec<Option<Outcome>>> = Mutex::new(vec![None; options.shots.len()]);
-    let trouble: Mutex<Option<BatchError>> = Mutex::new(None);
-    let work = || {
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            let Some(shot) = options.shots.get(at).and_then(|&index| manifest.shots.get(index)) else { return };
-            if (options.stop)() || locked(&trouble).is_some() {
-                return;
-            }
-            match one(shot, options, &report) {
-                Ok(outcome) => {
-                    (options.told)(shot, &outcome, ended.fetch_add(1, Ordering::Relaxed) + 1);
-                    locked(&outcomes)[at] = Some(outcome);
-                }
-                Err(error) => {
-                    locked(&trouble).get_or_insert(error);
-                }
-            }
-        }
+    let run = Run {
+        manifest,
+        options,
+        report,
+        queue: Queue::new(count),
+        ended: AtomicUsize::new(0),
+        outcomes: Mutex::new(vec![None; count]),
+        trouble: Mutex::new(None),
     };
-    std::thread::scope(|scope| (0..options.jobs.max(1)).for_each(|_| drop(scope.spawn(work))));
-    if let Some(error) = locked(&trouble).take() {
+    std::thread::scope(|scope| (0..options.jobs.max(1)).for_each(|_| drop(scope.spawn(|| run.work()))));
+    if let Some(error) = locked(&run.trouble).take() {
         return Err(error);
     }
-    let outcomes: Vec<Outcome> = locked(&outcomes).drain(..).flatten().collect();
-    if outcomes.len() < options.shots.len() {
+    let outcomes: Vec<Outcome> = locked(&run.outcomes).drain(..).flatten().collect();
+    if outcomes.len() < count {
         return Err(BatchError::Stopped);
     }
-    report.line(&end(&outcomes))?;
+    run.report.line(&end(&outcomes))?;
     Ok(outcomes)
 }
 
-fn one(shot: &Shot, options: &Options, report: &Report) -> Result<Outcome, BatchError> {
+/// What the threads of a run share.
+struct Run<'a> {
+    manifest: &'a Manifest,
+    options: &'a Options<'a>,
+    report: Report,
+    queue: Queue,
+    /// Number of shots that ended.
+    ended: AtomicUsize,
+    outcomes: Mutex<Vec<Option<Outcome>>>,
+    trouble: Mutex<Option<BatchError>>,
+}
+
+impl Run<'_> {
+    /// Takes shots until none is left.
+    fn work(&self) {
+        let options = self.options;
+        while let Some(place) = self.queue.take() {
+            let shot = options.shots.get(place.at).and_then(|&index| self.manifest.shots.get(index));
+            let Some(shot) = shot.filter(|_| !(options.stop)() && locked(&self.trouble).is_none()) else { return };
+            match one(shot, options, &self.report) {
+                Ok(Some(outcome)) => {
+                    (options.told)(shot, &outcome, self.ended.fetch_add(1, Ordering::Relaxed) + 1);
+                    locked(&self.outcomes)[place.at] = Some(outcome);
+                }
+                Ok(None) => {
+                    wait(shot, place, options, &self.report);
+                    self.queue.put_back(place);
+                }
+                Err(error) => {
+                    locked(&self.trouble).get_or_insert(error);
+                }
+            }
+        }
+    }
+}
+
+/// Works on a shot; `None` if another worker has it.
+fn one(shot: &Shot, options: &Options, report: &Report) -> Result<Option<Outcome>, BatchError> {
     let folder = options.folder.join(&shot.name);
-    let failed = |error: &dyn std::fmt::Display| Outcome::Failed(error.to_string());
     let outcome = match in_folder(shot, &folder, options, report) {
-        Ok(record) => Outcome::of(&record),
+        Ok(Some(record)) => Outcome::of(&record),
+        Ok(None) => return Ok(None),
         Err(ShotError::Stopped) => return Err(BatchError::Stopped),
         // A folder that vanished concerns this shot alone.
-        Err(error) => failed(&error),
+        Err(error) => Outcome::Failed(error.to_string()),
     };
     let record = Record::read(&folder).map(|(record, _)| record).unwrap_or_default();
     report.line(&line(shot, &outcome, &record))?;
-    Ok(outcome)
+    Ok(Some(outcome))
 }
 
-fn in_folder(shot: &Shot, folder: &Path, options: &Options, report: &Report) -> Result<Record, ShotError> {
+/// Waits a moment for a shot that another worker has. At its first try the free shots still come; then it is told once.
+fn wait(shot: &Shot, place: Place, options: &Options, report: &Report) {
+    if place.locked == 0 {
+        return;
+    }
+    if place.locked == 1 {
+        let _ = report.line(&json!({"event": "wait", "shot": shot.name}));
+        (options.waits)(shot);
+    }
+    sleep(PAUSE);
+}
+
+fn in_folder(shot: &Shot, folder: &Path, options: &Options, report: &Report) -> Result<Option<Record>, ShotError> {
     make_folder(folder)?;
-    let waiting = || drop(report.line(&json!({"event": "wait", "shot": shot.name})));
-    let Some(lock) = Lock::wait(folder, options.stop, &waiting)? else { return Err(ShotError::Stopped) };
+    // A shot that waits for memory is free for other workers, and no memory is asked for one that another worker has.
+    if Lock::take(folder)?.is_none() {
+        return Ok(None);
+    }
     let told = |shot: &Shot, end: &StepEnd| drop(report.line(&step_line(shot, end)));
     let need = need(shot, folder);
     let part = options.memory.bytes() / options.jobs.max(1) as u64;
     let keep = need.frames.min(part.saturating_sub(need.steps));
     let _share = options.memory.take(need.steps.saturating_add(keep));
+    let Some(lock) = Lock::take(folder)? else { return Ok(None) };
     let worker = Worker { program: &options.program, threads: options.threads, keep, stop: options.stop, told: &told };
-    shot::run(shot, folder, &lock, &worker)
+    shot::run(shot, folder, &lock, &worker).map(Some)
 }
 
 /// Bytes that a shot needs.
@@ -151,7 +200,7 @@ fn line(shot: &Shot, outcome: &Outcome, record: &Record) -> Value {
     let findings = &record.findings;
     let lost: Vec<_> = findings.parts.iter().filter(|part| !part.lost.is_empty()).map(|part| &part.name).collect();
     json!({
-        "event": "shot", "shot": shot.name, "outcome": outcome.id(), "failure": record.failure,
+        "event": "shot", "shot": shot.name, "outcome": outcome.id(), "failure": outcome.failure(),
         "seconds": rounded(record.seconds()), "processor_seconds": rounded(record.processor_seconds()),
         "peak_bytes": record.peak_bytes(),
         "confidence": rounded(findings.confidence), "lost": lost, "wanted": findings.wanted
@@ -163,10 +212,53 @@ fn end(outcomes: &[Outcome]) -> Value {
     json!({"event": "end", "good": count("good"), "wants_keys": count("wants_keys"), "failed": count("failed")})
 }
 
-fn rounded(value: f64) -> f64 {
-    (value * 1000.0).round() / 1000.0
-}
-
 fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::Step;
+
+    /// A manifest of one shot, whose project does not exist.
+    fn manifest() -> Manifest {
+        let steps = vec![Step::read(&json!({"do": "check"})).unwrap()];
+        Manifest { shots: vec![Shot { name: "a".into(), project: "none.json".into(), blend: None, steps }] }
+    }
+
+    #[test]
+    fn a_shot_that_waits_for_memory_is_free_for_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let (manifest, shot) = (manifest(), folder.path().join("a"));
+        // A record says what the shot needs.
+        let done = crate::record::Done { peak_bytes: 10, ..Default::default() };
+        std::fs::create_dir(&shot).unwrap();
+        Record { rototoon_record: 1, steps: vec![done], ..Record::default() }.write(&shot).unwrap();
+        let options = Options {
+            folder: folder.path().to_owned(),
+            shots: vec![0],
+            jobs: 1,
+            threads: 1,
+            memory: Budget::new(10),
+            program: "none".into(),
+            report: folder.path().join("report.jsonl"),
+            stop: &|| false,
+            waits: &|_| {},
+            told: &|_, _, _| {},
+        };
+        let all = options.memory.take(10);
+        std::thread::scope(|scope| {
+            let run = scope.spawn(|| run(&manifest, &options));
+            // Long enough to come to the memory; it holds the lock for a moment before.
+            let start = std::time::Instant::now();
+            while !shot.join(crate::lock::LOCK).exists() && start.elapsed() < Duration::from_secs(60) {
+                sleep(PAUSE);
+            }
+            sleep(Duration::from_millis(300));
+            assert!(Lock::take(&shot).unwrap().is_some());
+            drop(all);
+            assert!(matches!(run.join().unwrap().unwrap()[..], [Outcome::Failed(_)]));
+        });
+    }
 }

@@ -3,8 +3,10 @@
 use crate::findings::WantedKey;
 use crate::manifest::{Manifest, Shot};
 use crate::record::{RECORD, Record};
+use crate::report::rounded;
 use rototoon::project::{WriteError, write_whole};
 use serde_json::{Value, json};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Name of the file.
@@ -33,6 +35,11 @@ impl Outcome {
         } else {
             Self::WantsKeys
         }
+    }
+
+    /// Why it failed; empty if it did not.
+    pub fn failure(&self) -> &str {
+        if let Self::Failed(reason) = self { reason } else { "" }
     }
 
     /// As in reports.
@@ -68,11 +75,21 @@ impl<'a> Summary<'a> {
     /// Reads the records of all shots in the folder of a batch. Nothing is changed.
     pub fn read(manifest: &'a Manifest, folder: &Path) -> Self {
         let entry = |shot: &'a Shot| match read_record(&folder.join(&shot.name)) {
-            Some(record) if finished(shot, &record) => Entry { shot, outcome: Outcome::of(&record), record },
-            Some(record) => Entry { shot, outcome: Outcome::NotRun, record },
-            None => Entry { shot, outcome: Outcome::NotRun, record: Record::default() },
+            Ok(Some(record)) if finished(shot, &record) => Entry { shot, outcome: Outcome::of(&record), record },
+            Ok(Some(record)) => Entry { shot, outcome: Outcome::NotRun, record },
+            Ok(None) => Entry { shot, outcome: Outcome::NotRun, record: Record::default() },
+            Err(reason) => Entry { shot, outcome: Outcome::Failed(reason), record: Record::default() },
         };
         Self { entries: manifest.shots.iter().map(entry).collect() }
+    }
+
+    /// Takes the failures of a run of all shots, in their order. A shot whose folder cannot be written has them nowhere else.
+    #[must_use]
+    pub fn after(mut self, outcomes: &[Outcome]) -> Self {
+        for (entry, outcome) in self.entries.iter_mut().zip(outcomes).filter(|(_, outcome)| outcome.id() == "failed") {
+            entry.outcome = outcome.clone();
+        }
+        self
     }
 
     /// Number of shots that came out so.
@@ -98,9 +115,9 @@ impl<'a> Summary<'a> {
         let shot = |entry: &Entry| {
             let (record, findings) = (&entry.record, &entry.record.findings);
             json!({
-                "shot": entry.shot.name, "outcome": entry.outcome.id(), "failure": record.failure,
-                "seconds": (record.seconds() * 1000.0).round() / 1000.0,
-                "processor_seconds": (record.processor_seconds() * 1000.0).round() / 1000.0, "peak_bytes": record.peak_bytes(),
+                "shot": entry.shot.name, "outcome": entry.outcome.id(), "failure": entry.outcome.failure(),
+                "seconds": rounded(record.seconds()),
+                "processor_seconds": rounded(record.processor_seconds()), "peak_bytes": record.peak_bytes(),
                 "confidence": findings.confidence, "parts": findings.parts
             })
         };
@@ -146,8 +163,15 @@ fn finished(shot: &Shot, record: &Record) -> bool {
     !record.failure.is_empty() || (record.steps.len() == shot.steps.len() && record.pending.is_empty())
 }
 
-fn read_record(folder: &Path) -> Option<Record> {
-    serde_json::from_str(&rototoon::file::text(&folder.join(RECORD)).ok()?).ok()
+/// The record of a shot, if there is one; the reason if it cannot be reached. Nothing is changed: the next worker sets a damaged
+/// one aside.
+pub(crate) fn read_record(folder: &Path) -> Result<Option<Record>, String> {
+    let path = folder.join(RECORD);
+    match rototoon::file::text(&path) {
+        Ok(text) => Ok(serde_json::from_str(&text).ok()),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::InvalidData) => Ok(None),
+        Err(error) => Err(format!("{}: cannot read: {error}", path.display())),
+    }
 }
 
 #[cfg(test)]

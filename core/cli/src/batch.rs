@@ -9,9 +9,10 @@ use rototoon::project::Inputs;
 use rototoon::scene::FrameNumber;
 use rototoon_batch::budget::Budget;
 use rototoon_batch::manifest::{Manifest, Shot};
+use rototoon_batch::page::{self, PAGE};
+use rototoon_batch::report;
 use rototoon_batch::run::{self, BatchError, Options};
 use rototoon_batch::summary::{Outcome, Summary};
-use rototoon_batch::{page, report};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -106,11 +107,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let whole = chosen.len() == manifest.shots.len();
     let fine = arguments::choice(given, "fine");
     if given.get_flag("summary") {
-        return status(&write_summary(&manifest, folder)?, fine);
+        return status(&write_summary(&Summary::read(&manifest, folder), folder)?, fine);
     }
     let outcomes = work(given, &manifest, chosen, (path, folder))?;
     if whole {
-        write_summary(&manifest, folder)?;
+        write_summary(&Summary::read(&manifest, folder).after(&outcomes), folder)?;
     }
     status(&outcomes, fine)
 }
@@ -154,6 +155,7 @@ fn work(
         program,
         report,
         stop: &progress::stopped,
+        waits: &|shot| line("note", &format!("{}: waiting for another worker that has it", shot.name)),
         told: &|shot, outcome, ended| tell(shot, outcome, ended, all),
     };
     run::run(manifest, &options).map_err(|error| match error {
@@ -187,7 +189,11 @@ fn chosen(given: &ArgMatches, manifest: &Manifest) -> Result<Vec<usize>, Failure
             Failure::Use(format!("{from}: --shot: found {name:?}, expected one of {}", known.join(", ")))
         })
     };
-    names.map(at).collect()
+    let mut places = names.map(at).collect::<Result<Vec<_>, _>>()?;
+    // In the order of the manifest, each once.
+    places.sort_unstable();
+    places.dedup();
+    Ok(places)
 }
 
 /// Checks the words of a step by the subcommand's own rules.
@@ -218,10 +224,9 @@ fn tell(shot: &Shot, outcome: &Outcome, ended: usize, all: usize) {
 }
 
 /// Writes summary and page. Returns how each shot came out.
-fn write_summary(manifest: &Manifest, folder: &Path) -> Result<Vec<Outcome>, Failure> {
-    let summary = Summary::read(manifest, folder);
+fn write_summary(summary: &Summary, folder: &Path) -> Result<Vec<Outcome>, Failure> {
     summary.write(folder)?;
-    page::write(&summary, folder)?;
+    page::write(summary, folder)?;
     let of = |id: &str| summary.count(id);
     let counts = format!(
         "{} good, {} want keys, {} failed, {} not run",
@@ -230,8 +235,8 @@ fn write_summary(manifest: &Manifest, folder: &Path) -> Result<Vec<Outcome>, Fai
         of("failed"),
         of("not_run")
     );
-    line("note", &format!("{counts}: see {}", folder.join(page::PAGE).display()));
-    Ok(summary.entries.into_iter().map(|entry| entry.outcome).collect())
+    line("note", &format!("{counts}: see {}", folder.join(PAGE).display()));
+    Ok(summary.entries.iter().map(|entry| entry.outcome.clone()).collect())
 }
 
 fn status(outcomes: &[Outcome], fine: &str) -> Result<(), Failure> {

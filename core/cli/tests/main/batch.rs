@@ -6,8 +6,7 @@ use std::fs;
 #[cfg(unix)]
 use std::process::Child;
 use std::process::{Command, Stdio};
-#[cfg(unix)]
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[test]
 fn a_batch_does_what_the_commands_do() {
@@ -249,6 +248,30 @@ fn two_workers_do_no_shot_twice() {
     }
     let done = season.events("step").iter().filter(|event| event["outcome"] == "done").count();
     assert_eq!(done, 4 * 5);
+}
+
+#[test]
+fn a_shot_that_another_worker_has_keeps_back_no_other() {
+    let season = Season::new(3);
+    let folder = season.path("out/sh0");
+    fs::create_dir_all(&folder).unwrap();
+    let other = fs::File::create(folder.join(".lock")).unwrap();
+    other.lock().unwrap();
+    let worker = season.command(&["--jobs", "1"]).stderr(Stdio::piped()).spawn().unwrap();
+    let events = |kind: &str| if season.path("out/report.jsonl").exists() { season.events(kind) } else { vec![] };
+    let start = Instant::now();
+    while events("wait").is_empty() {
+        assert!(start.elapsed() < Duration::from_secs(60), "it waits while others are free");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(outcomes(&events("shot")), ["good", "good"]);
+    // It looks again and again, and says so once.
+    std::thread::sleep(Duration::from_millis(300));
+    drop(other);
+    let output = worker.wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.contains("3 good, 0 want keys"), "{said}");
+    assert_eq!((said.matches("sh0: waiting for another worker").count(), events("wait").len()), (1, 1), "{said}");
 }
 
 #[cfg(unix)]

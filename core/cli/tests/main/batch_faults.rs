@@ -72,8 +72,23 @@ fn a_folder_of_results_that_is_gone_or_no_folder_concerns_its_shot_alone() {
     season.clear_report();
     let output = season.run(&["--jobs", "1"]);
     assert_eq!(output.status.code(), Some(1));
-    assert_eq!(outcomes(&season.events("shot")), ["good", "failed", "good"]);
+    let events = season.events("shot");
+    assert_eq!(outcomes(&events), ["good", "failed", "good"]);
     assert_eq!(fs::read_to_string(season.path("out/sh1")).unwrap(), "a file");
+    // Screen, report, summary and page say the same.
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("2 good, 0 want keys, 1 failed, 0 not run"), "{said}");
+    let reason = events[1]["failure"].as_str().unwrap();
+    assert!(reason.contains("sh1: cannot write: ") && said.contains(reason), "{reason} / {said}");
+    assert_eq!(events[1]["seconds"].to_string(), "0.0");
+    let found = summary(&season);
+    assert_eq!((&found["failed"], &found["not_run"]), (&season.events("end")[0]["failed"], &json!(0)));
+    assert_eq!((&found["shots"][1]["outcome"], &found["shots"][1]["failure"]), (&json!("failed"), &json!(reason)));
+    assert!(fs::read_to_string(season.path("out/index.html")).unwrap().contains("sh1: cannot write: "));
+    // A later look at the folder finds why, too. Windows does not say that the folder is a file.
+    assert_eq!(season.run(&["--summary"]).status.code(), Some(1));
+    let found = summary(&season)["shots"][1].clone();
+    assert!(cfg!(windows) || found["failure"].as_str().unwrap().contains("sh1"), "{found}");
 }
 
 #[cfg(unix)]
