@@ -4,6 +4,7 @@
 //! reason, ends the shot and nothing else.
 
 use crate::answer::{Answer, request};
+use crate::peak;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -16,6 +17,8 @@ use std::time::{Duration, Instant};
 const PAUSE: Duration = Duration::from_millis(5);
 /// Time that the program has to end after it was asked to.
 const GRACE: Duration = Duration::from_secs(3);
+/// Time between two looks at the program's memory.
+const LOOK: Duration = Duration::from_millis(100);
 /// Greatest number of bytes of messages that are kept.
 const MOST_MESSAGES: usize = 64 << 10;
 
@@ -30,7 +33,7 @@ pub struct Ended {
     pub messages: Vec<String>,
     /// Seconds that it ran.
     pub seconds: f64,
-    /// The most memory that it held; 0 where it did not say it.
+    /// The most memory that it held, as it said or was seen; 0 where neither was.
     pub peak_bytes: u64,
     /// Bytes of decoded frames that are kept for later steps.
     pub kept_bytes: u64,
@@ -47,6 +50,22 @@ pub struct Program {
     requests: Option<ChildStdin>,
     output: Receiver<Vec<u8>>,
     steps: usize,
+}
+
+/// What a program said and did while it had a step.
+struct Heard {
+    said: Vec<u8>,
+    end: End,
+    /// Whether it was asked to end.
+    asked: bool,
+    /// The most memory that it was seen to hold.
+    held: u64,
+}
+
+/// How a program came to the end of a step.
+enum End {
+    Answer(Answer),
+    Gone(ExitStatus),
 }
 
 impl Program {
@@ -89,16 +108,42 @@ impl Program {
         self.steps += 1;
         // If the program is gone, its output has ended too.
         let _ = self.requests.as_mut().map(|pipe| pipe.write_all(request(words).as_bytes()));
+        let Heard { said, end, asked, held } = self.listen(stop)?;
+        let text = String::from_utf8_lossy(&said);
+        let messages = text.lines().filter(|line| Answer::read(line).is_none()).map(str::to_owned).collect();
+        let (code, description, answer) = match end {
+            End::Answer(answer) => (Some(i32::from(answer.status)), format!("exit status: {}", answer.status), answer),
+            // It has not told what it held.
+            End::Gone(status) => (status.code(), status.to_string(), Answer { peak_bytes: held, ..Answer::default() }),
+        };
+        Ok(Ended {
+            status: code,
+            description,
+            messages,
+            seconds: start.elapsed().as_secs_f64(),
+            processor_seconds: answer.processor_ms as f64 / 1000.0,
+            peak_bytes: answer.peak_bytes,
+            kept_bytes: answer.kept_bytes,
+            stopped: asked,
+        })
+    }
+
+    /// Listens until the program answers or ends. If `stop` is true it is asked to end, and killed if it takes too long.
+    fn listen(&mut self, stop: &dyn Fn() -> bool) -> io::Result<Heard> {
         let (mut said, mut asked) = (Vec::new(), None::<Instant>);
-        let (answer, status) = loop {
+        let (mut looked, mut held) = (Instant::now(), 0);
+        let end = loop {
             match self.output.recv_timeout(PAUSE) {
                 Ok(block) => said.extend(block),
                 Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => break (None, Some(self.end()?)),
+                Err(RecvTimeoutError::Disconnected) => break End::Gone(self.end()?),
             }
             shorten(&mut said);
             if let Some(answer) = self.answer(&said) {
-                break (Some(answer), None);
+                break End::Answer(answer);
+            }
+            if looked.elapsed() > LOOK {
+                (looked, held) = (Instant::now(), peak::of(&self.child.id().to_string()).max(held));
             }
             match asked {
                 None if stop() => {
@@ -109,23 +154,7 @@ impl Program {
                 _ => {}
             }
         };
-        let text = String::from_utf8_lossy(&said);
-        let messages = text.lines().filter(|line| Answer::read(line).is_none()).map(str::to_owned).collect();
-        let code =
-            answer.map_or_else(|| status.and_then(|status| status.code()), |answer| Some(i32::from(answer.status)));
-        let description =
-            status.map_or_else(|| format!("exit status: {}", code.unwrap_or_default()), |status| status.to_string());
-        let Answer { peak_bytes, kept_bytes, processor_ms, .. } = answer.unwrap_or_default();
-        Ok(Ended {
-            status: code,
-            description,
-            messages,
-            seconds: start.elapsed().as_secs_f64(),
-            processor_seconds: processor_ms as f64 / 1000.0,
-            peak_bytes,
-            kept_bytes,
-            stopped: asked.is_some(),
-        })
+        Ok(Heard { said, end, asked: asked.is_some(), held })
     }
 
     /// The answer to the last request, if it is what was said last.
@@ -222,9 +251,10 @@ mod tests {
 
     #[test]
     fn a_program_that_was_ended_says_how() {
-        let mut program = shell("read a; echo 'note: a' >&2; kill -9 $$");
+        let mut program = shell("read a; echo 'note: a' >&2; sleep 0.5; kill -9 $$");
         for messages in [1, 0] {
             let ended = step(&mut program);
+            assert_eq!(ended.peak_bytes > 0, messages == 1 && cfg!(target_os = "linux"));
             assert_eq!((ended.status, ended.messages.len()), (None, messages));
             assert!(ended.description.contains('9'), "{}", ended.description);
         }

@@ -14,6 +14,8 @@
 //! - [`answer`]: what the two say to each other
 //! - [`shot`]: all steps of a shot
 //! - [`budget`]: how many shots fit into the memory
+//! - [`limits`]: the memory of the machine and of containers
+//! - [`peak`]: the most memory that a process has held
 //! - [`findings`]: confidence, lost parts and the keys that would help most
 //! - [`report`]: JSON lines while it runs
 //! - [`summary`]: what all records together say
@@ -36,9 +38,11 @@ pub mod child;
 pub mod digest;
 pub mod findings;
 pub mod jobs;
+pub mod limits;
 pub mod lock;
 pub mod manifest;
 pub mod page;
+pub mod peak;
 pub mod queue;
 pub mod record;
 pub mod report;

@@ -29,6 +29,9 @@ pub struct Record {
     /// Hash of each file that still has its first name.
     #[serde(default)]
     pub pending: BTreeMap<String, String>,
+    /// The most memory that a step held which the system ended; 0 if the shot came to its end since.
+    #[serde(default)]
+    pub ended_bytes: u64,
     /// Why the shot failed; empty if it did not.
     #[serde(default)]
     pub failure: String,
@@ -95,7 +98,7 @@ impl Record {
 
     /// The most memory that any step held.
     pub fn peak_bytes(&self) -> u64 {
-        self.steps.iter().map(|done| done.peak_bytes).max().unwrap_or(0)
+        self.steps.iter().map(|done| done.peak_bytes).max().unwrap_or(0).max(self.ended_bytes)
     }
 
     /// The most memory that any step held for itself, without the frames that were kept.

@@ -7,7 +7,7 @@ use crate::queue::{Place, Queue};
 use crate::record::Record;
 use crate::report::{Report, rounded};
 use crate::shot::{self, ShotError, StepEnd, Worker};
-use crate::summary::Outcome;
+use crate::summary::{Outcome, read_record};
 use rototoon::project::{Document, WriteError};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -158,7 +158,7 @@ fn in_folder(shot: &Shot, folder: &Path, options: &Options, report: &Report) -> 
         return Ok(None);
     }
     let told = |shot: &Shot, end: &StepEnd| drop(report.line(&step_line(shot, end)));
-    let need = need(shot, folder);
+    let need = need(shot, folder, options.threads);
     let part = options.memory.bytes() / options.jobs.max(1) as u64;
     let keep = need.frames.min(part.saturating_sub(need.steps));
     let _share = options.memory.take(need.steps.saturating_add(keep));
@@ -175,13 +175,17 @@ struct Need {
     frames: u64,
 }
 
-fn need(shot: &Shot, folder: &Path) -> Need {
-    let before = Record::read(folder).map_or(0, |(record, _)| record.own_bytes());
+fn need(shot: &Shot, folder: &Path, threads: usize) -> Need {
+    let record = read_record(folder).ok().flatten().unwrap_or_default();
+    // What it held when the system ended it was not enough.
+    let before = record.own_bytes().max(record.ended_bytes.saturating_add(record.ended_bytes / 2));
     // A document that cannot be read is the shot's failure, and told there.
     let Ok(document) = Document::load(&shot.project) else { return Need { steps: before, frames: 0 } };
-    let footage = &document.scene.footage;
-    let frames = kept(footage, shot.project.parent().unwrap_or(Path::new("")));
-    Need { steps: if before > 0 { before } else { estimate(footage) }, frames }
+    let scene = &document.scene;
+    let frames = kept(&scene.footage, shot.project.parent().unwrap_or(Path::new("")));
+    // The steps that are done may have been the small ones.
+    let known = before > 0 && record.ended_bytes == 0 && record.steps.len() >= shot.steps.len();
+    Need { steps: if known { before } else { before.max(estimate(scene, threads)) }, frames }
 }
 
 fn make_folder(folder: &Path) -> Result<(), WriteError> {
@@ -260,5 +264,25 @@ mod tests {
             drop(all);
             assert!(matches!(run.join().unwrap().unwrap()[..], [Outcome::Failed(_)]));
         });
+    }
+
+    #[test]
+    fn a_shot_that_the_system_ended_gets_more_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        let (manifest, project) = (manifest(), folder.path().join("project.json"));
+        let footage = json!({"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 64, "height": 48});
+        std::fs::write(&project, json!({"rototoon": 1, "footage": footage, "parts": []}).to_string()).unwrap();
+        let shot = Shot { project, ..manifest.shots[0].clone() };
+        let steps = |record: Record| {
+            Record { rototoon_record: 1, ..record }.write(folder.path()).unwrap();
+            need(&shot, folder.path(), 1).steps
+        };
+        let done = |bytes| vec![crate::record::Done { peak_bytes: bytes, ..Default::default() }];
+        let estimate = steps(Record::default());
+        assert!(estimate > 50_000_000);
+        assert_eq!(steps(Record { steps: done(9), ..Record::default() }), 9, "what it took");
+        assert_eq!(steps(Record { ended_bytes: 2_000_000_000, ..Record::default() }), 3_000_000_000);
+        // A small step is done; the one that failed is not known.
+        assert_eq!(steps(Record { steps: done(9), ended_bytes: 10, ..Record::default() }), estimate);
     }
 }

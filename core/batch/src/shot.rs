@@ -7,6 +7,7 @@ use crate::manifest::Shot;
 use crate::record::{Done, Record};
 use crate::step::Step;
 use crate::{digest, page};
+use rototoon::memory::Bytes;
 use rototoon::project::{Document, WriteError};
 use rototoon::scene::Footage;
 use std::collections::BTreeMap;
@@ -158,6 +159,7 @@ impl Work<'_> {
             }
         }
         self.forget()?;
+        self.record.ended_bytes = 0;
         // Its memory is free from here on.
         self.program = None;
         self.find(&document, &frames)
@@ -198,6 +200,9 @@ impl Work<'_> {
         }
         if ended.status != Some(0) {
             self.clear()?;
+            if ended.status.is_none() {
+                self.record.ended_bytes = self.record.ended_bytes.max(ended.peak_bytes);
+            }
             self.tell(step, StepOutcome::Failed, Some(&ended));
             return Err(ShotError::Step(failure(step, &ended)));
         }
@@ -368,12 +373,22 @@ impl Work<'_> {
 /// Why a step failed, in one line.
 fn failure(step: &Step, ended: &Ended) -> String {
     let errors: Vec<&str> = ended.messages.iter().filter_map(|line| line.strip_prefix("error: ")).collect();
-    let why = match ended.status {
-        None => format!("ended by the system ({})", ended.description),
-        Some(_) if errors.is_empty() => format!("ended with {}", ended.description),
-        Some(_) => errors.join("; "),
+    let (how, last) = (&ended.description, last_words(ended));
+    let why = match (ended.status, ended.peak_bytes) {
+        (None, 0) => format!("ended by the system ({how}){last}"),
+        (None, bytes) => format!("ended by the system ({how}) while it held {}{last}", Bytes(bytes)),
+        (Some(_), _) if errors.is_empty() => format!("ended with {how}{last}"),
+        (Some(_), _) => errors.join("; "),
     };
     format!("{}: {why}", step.name())
+}
+
+/// What a program said last, after a colon: the words of a panic, or of an allocation that failed. A list of calls may follow.
+fn last_words(ended: &Ended) -> String {
+    let said =
+        |line: &&String| !line.trim().is_empty() && !line.starts_with("warning: ") && !line.starts_with("note: ");
+    let words = ended.messages.iter().take_while(|line| *line != "stack backtrace:").filter(said);
+    words.last().map_or_else(String::new, |line| format!(": {line}"))
 }
 
 /// A message as if the files had their names already.
@@ -392,9 +407,10 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     #[test]
     fn messages_have_the_final_names_of_files() {
@@ -405,5 +421,29 @@ mod tests {
         ] {
             assert_eq!(with_final_names(said), told);
         }
+    }
+
+    #[test]
+    fn a_step_that_the_system_ends_leaves_its_last_words_and_what_it_held() {
+        let folder = tempfile::tempdir().unwrap();
+        let project = folder.path().join("project.json");
+        // The program is asked for `steps` in this folder: a shell takes that as its script.
+        let script = "read a; echo 'memory allocation of 7 bytes failed' >&2; echo 'note: here' >&2
+            echo 'stack backtrace:' >&2; echo '   0: main' >&2; sleep 0.5; kill -9 $$";
+        fs::write(folder.path().join("steps"), script).unwrap();
+        let footage = json!({"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 64, "height": 48});
+        fs::write(&project, json!({"rototoon": 1, "footage": footage, "parts": []}).to_string()).unwrap();
+        let steps = vec![Step::read(&json!({"do": "check"})).unwrap()];
+        let shot = Shot { name: "a".into(), project, blend: None, steps };
+        let (lock, told) = (Lock::take(folder.path()).unwrap().unwrap(), |_: &Shot, _: &StepEnd| {});
+        let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &|| false, told: &told };
+        let record = run(&shot, folder.path(), &lock, &worker).unwrap();
+        let failure = record.failure.as_str();
+        assert!(failure.starts_with("check: ended by the system (signal: 9"), "{failure}");
+        assert!(failure.ends_with(": memory allocation of 7 bytes failed"), "{failure}");
+        if cfg!(target_os = "linux") {
+            assert!(record.ended_bytes > 0 && failure.contains(" while it held "), "{failure}");
+        }
+        assert_eq!(Record::read(folder.path()).unwrap().0.peak_bytes(), record.ended_bytes);
     }
 }
