@@ -5,6 +5,7 @@
 //! fails, or that the system ends for want of memory, ends nothing else.
 //!
 //! - [`manifest`]: the manifest and everything that may be wrong with it
+//! - [`strict`]: JSON in which no field is given twice
 //! - [`step`]: the steps; each is described once, as the words of a subcommand
 //! - [`digest`]: hashes of what a step reads
 //! - [`record`]: what was done for a shot, so that it is not done again
@@ -49,4 +50,5 @@ pub mod report;
 pub mod run;
 pub mod shot;
 pub mod step;
+pub mod strict;
 pub mod summary;

@@ -10,7 +10,11 @@
 //!
 //! `project` and `blend` are relative to the manifest's folder. A shot may have `steps` of its own.
 
+use crate::page::PAGE;
+use crate::report::REPORT;
 use crate::step::{self, Step};
+use crate::strict;
+use crate::summary::SUMMARY;
 use rototoon::file;
 use rototoon::project::{Document, described};
 use rototoon::scene::Footage;
@@ -25,6 +29,8 @@ pub const VERSION: u64 = 1;
 pub const MOST_SHOTS: usize = 100_000;
 /// Greatest number of bytes of a shot's name. It becomes the name of a folder.
 const LONGEST_NAME: usize = 120;
+/// Names in the folder of the results that belong to the batch.
+const RESERVED: [&str; 3] = [PAGE, SUMMARY, REPORT];
 /// Number of problems that are listed.
 const MOST_PROBLEMS: usize = 20;
 
@@ -94,14 +100,16 @@ impl Manifest {
     ///
     /// All problems, a line each.
     pub fn parse(text: &str, folder: &Path, check: CheckWords) -> Result<Self, Vec<String>> {
-        let value: Value = serde_json::from_str(text).map_err(|error| vec![format!("no JSON: {error}")])?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let value = strict::parse(text).map_err(|problem| vec![problem])?;
         let Value::Object(fields) = value else {
             return Err(vec![format!("found {}, expected an object", described(Some(&value)))]);
         };
-        match fields.get("rototoon_batch").and_then(Value::as_u64) {
-            Some(VERSION) => {}
-            Some(found) => return Err(vec![format!("rototoon_batch: found {found}, expected {VERSION}")]),
-            None => return Err(vec![format!("rototoon_batch: found nothing, expected the version {VERSION}")]),
+        let version = fields.get("rototoon_batch");
+        // Some programs write whole numbers as 1.0.
+        if version.and_then(Value::as_f64) != Some(VERSION as f64) {
+            let found = described(version);
+            return Err(vec![format!("rototoon_batch: found {found}, expected the version {VERSION}")]);
         }
         let mut reader = Reader { folder, check, problems: Vec::new(), names: BTreeMap::new() };
         reader.unknown("", &fields, &["rototoon_batch", "steps", "shots"]);
@@ -163,6 +171,11 @@ impl Reader<'_> {
         let name = value.and_then(Value::as_str).unwrap_or_default();
         if let Err(expected) = safe_name(name) {
             self.problems.push(format!("{place}: found {name:?}, expected {expected}"));
+            return None;
+        }
+        if RESERVED.iter().any(|reserved| name.eq_ignore_ascii_case(reserved)) {
+            self.problems
+                .push(format!("{place}: found {name:?}, expected another name: this one belongs to the batch"));
             return None;
         }
         // Some systems do not tell large letters from small ones.
@@ -275,7 +288,14 @@ mod tests {
     fn each_problem_has_a_line() {
         assert_eq!(problems("[]"), ["found [], expected an object"]);
         assert_eq!(problems("{}"), ["rototoon_batch: found nothing, expected the version 1"]);
-        assert_eq!(problems(r#"{"rototoon_batch": 2}"#), ["rototoon_batch: found 2, expected 1"]);
+        for (version, found) in [("2", "2"), ("1.5", "1.5"), ("\"1\"", "\"1\""), ("null", "null")] {
+            let problems = problems(&format!("{{\"rototoon_batch\": {version}}}"));
+            assert_eq!(problems, [format!("rototoon_batch: found {found}, expected the version 1")]);
+        }
+        assert!(
+            problems(r#"{"rototoon_batch": 1, "steps": [], "steps": []}"#)[0]
+                .starts_with("found the field \"steps\" twice")
+        );
         let text = r#"{"rototoon_batch": 1, "step": 1, "steps": [{"do": "fly"}, {"do": "track"}, {"do": "track"}], "shots": [
             {"name": "a/b", "project": "p"}, {"name": "x", "project": "p"}, {"name": "X", "project": ""}, 7]}"#;
         let found = problems(text);
@@ -291,6 +311,19 @@ mod tests {
         assert_eq!(found.len(), begins.len(), "{found:#?}");
         for (found, begin) in found.iter().zip(begins) {
             assert!(found.starts_with(begin), "{found} / {begin}");
+        }
+    }
+
+    #[test]
+    fn a_mark_before_the_text_and_a_version_with_a_point_are_fine() {
+        let text = r#"{"rototoon_batch": 1.0, "steps": [{"do": "check"}], "shots": [{"name": "a", "project": "p"}]}"#;
+        assert!(problems(&format!("\u{feff}{text}")).is_empty());
+        for name in ["index.html", "Summary.json", "report.jsonl"] {
+            let found = problems(&text.replace("\"a\"", &format!("{name:?}")));
+            assert_eq!(
+                found,
+                [format!("shots[0].name: found {name:?}, expected another name: this one belongs to the batch")]
+            );
         }
     }
 

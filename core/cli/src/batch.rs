@@ -12,7 +12,7 @@ use rototoon_batch::manifest::{Manifest, Shot};
 use rototoon_batch::page::{self, PAGE};
 use rototoon_batch::report;
 use rototoon_batch::run::{self, BatchError, Options};
-use rototoon_batch::summary::{Outcome, Summary};
+use rototoon_batch::summary::{Outcome, SUMMARY, Summary};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -133,8 +133,14 @@ fn work(
     shots: Vec<usize>,
     (path, folder): (&Path, &Path),
 ) -> Result<Vec<Outcome>, Failure> {
-    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join("report.jsonl"));
+    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join(report::REPORT));
     named(path, manifest).check(&report)?;
+    if [PAGE, SUMMARY].iter().any(|name| report == folder.join(name)) {
+        let report = report.display();
+        return Err(Failure::Use(format!(
+            "--report: found {report}, expected another name: this one belongs to the batch"
+        )));
+    }
     // This keeps frames safe too.
     report::check(&report).map_err(|error| Failure::Use(error.to_string()))?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

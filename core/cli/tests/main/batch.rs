@@ -190,6 +190,7 @@ fn wrong_manifests_and_requests_end_before_any_work() {
         (["--memory", "0"], "expected a positive number"),
         (["--report", "in/sh0/project.json"], "the command reads"),
         (["--report", "in/sh0/f_001.png"], "f_001.png: cannot write: found a file that is no report"),
+        (["--report", "out/summary.json"], "--report: found out/summary.json, expected another name"),
         (["--report", "notes.txt"], "notes.txt: cannot write: found a file that is no report"),
     ] {
         let output = season.run(&more);
