@@ -127,22 +127,29 @@ pub fn named(path: &Path, manifest: &Manifest) -> Inputs {
     files.fold(Inputs::default().file(path), |inputs, file| inputs.file(file))
 }
 
+/// Where the report goes: to a report that is there, or where nothing is and nothing will be.
+fn report_path(given: &ArgMatches, manifest: &Manifest, (path, folder): (&Path, &Path)) -> Result<PathBuf, Failure> {
+    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join(report::REPORT));
+    named(path, manifest).check(&report)?;
+    let mut taken = [PAGE, SUMMARY].into_iter().chain(manifest.shots.iter().map(|shot| shot.name.as_str()));
+    if taken.any(|name| report == folder.join(name)) {
+        let found = report.display();
+        return Err(Failure::Use(format!(
+            "--report: found {found}, expected another name: this one belongs to the batch"
+        )));
+    }
+    // This keeps frames safe too.
+    report::check(&report).map_err(|error| Failure::Use(error.to_string()))?;
+    Ok(report)
+}
+
 fn work(
     given: &ArgMatches,
     manifest: &Manifest,
     shots: Vec<usize>,
     (path, folder): (&Path, &Path),
 ) -> Result<Vec<Outcome>, Failure> {
-    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join(report::REPORT));
-    named(path, manifest).check(&report)?;
-    if [PAGE, SUMMARY].iter().any(|name| report == folder.join(name)) {
-        let report = report.display();
-        return Err(Failure::Use(format!(
-            "--report: found {report}, expected another name: this one belongs to the batch"
-        )));
-    }
-    // This keeps frames safe too.
-    report::check(&report).map_err(|error| Failure::Use(error.to_string()))?;
+    let report = report_path(given, manifest, (path, folder))?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let asked = |id: &str| given.get_one::<u16>(id).map_or(0, |number| usize::from(*number));
     let jobs = if asked("jobs") == 0 { cores } else { asked("jobs") }.min(shots.len()).max(1);

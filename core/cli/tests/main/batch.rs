@@ -179,7 +179,7 @@ fn the_status_says_that_keys_are_wanted() {
 }
 
 #[test]
-fn wrong_manifests_and_requests_end_before_any_work() {
+fn wrong_requests_end_before_any_work() {
     let season = Season::new(2);
     fs::write(season.path("notes.txt"), "mine").unwrap();
     let before = fs::read(season.path("in/sh0/f_001.png")).unwrap();
@@ -191,12 +191,21 @@ fn wrong_manifests_and_requests_end_before_any_work() {
         (["--report", "in/sh0/project.json"], "the command reads"),
         (["--report", "in/sh0/f_001.png"], "f_001.png: cannot write: found a file that is no report"),
         (["--report", "out/summary.json"], "--report: found out/summary.json, expected another name"),
+        (["--report", "out/sh1"], "--report: found out/sh1, expected another name"),
         (["--report", "notes.txt"], "notes.txt: cannot write: found a file that is no report"),
     ] {
         let output = season.run(&more);
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && said.contains(expected), "{more:?}: {said}");
     }
+    assert!(!season.path("out").exists());
+    assert_eq!(fs::read_to_string(season.path("notes.txt")).unwrap(), "mine");
+    assert_eq!(fs::read(season.path("in/sh0/f_001.png")).unwrap(), before);
+}
+
+#[test]
+fn wrong_steps_and_names_of_results_end_before_any_work() {
+    let season = Season::new(2);
     let track = json!({"do": "track"});
     for (steps, expected) in [
         (json!([{"do": "track", "preset": "magic"}]), "steps[0]: invalid value 'magic'"),
@@ -222,8 +231,6 @@ fn wrong_manifests_and_requests_end_before_any_work() {
         assert!(output.status.code() == Some(2) && said.contains(expected), "{expected}: {said}");
     }
     assert!(!season.path("out").exists());
-    assert_eq!(fs::read_to_string(season.path("notes.txt")).unwrap(), "mine");
-    assert_eq!(fs::read(season.path("in/sh0/f_001.png")).unwrap(), before);
 }
 
 #[test]
