@@ -8,25 +8,30 @@
 //!
 //! # The estimate
 //!
-//! Tracking takes most. The default tracker scales every picture to 540 lines, *working pixels*. It keeps
+//! A step holds the program itself, the pictures that a sequence keeps as floats, at most 268 MB, and what it works with.
+//! The default tracker scales every picture to 540 lines, *working pixels*. It holds
 //!
 //! - three levels of colours and slopes of each frame, together 8 bytes for each working pixel,
-//! - what it knows of the places where a part may be: up to 300 bytes for each working pixel within the part, on each frame,
-//! - the pictures that each thread works on, at most 70 bytes for each pixel as the files have them.
+//! - what it knows of the places where a part may be: up to 200 bytes for each working pixel within the part, on each frame,
+//! - the pictures that each thread works on, up to 60 bytes for each working pixel.
 //!
-//! Peaks were measured on 28 November 2026 as the resident set of `track`, in MB:
+//! Drawing holds 70 bytes for each pixel and thread. The greater of tracking and drawing counts. Peaks were measured on
+//! 28 November 2026 as the resident set of `track`, in MB:
 //!
 //! | shot | size | frames | parts | pixels within parts | 1 thread | estimate | more threads | estimate |
 //! | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
-//! | walking boy | 420 × 540 | 15 | 12 | 18 % | 156 | 280 | 8: 215 | 391 |
-//! | running figure | 640 × 539 | 6 | 7 | 13 % | 101 | 173 | 8: 190 | 342 |
-//! | jumping girl | 540 × 540 | 34 | 12 | 16 % | 433 | 639 | 8: 554 | 782 |
-//! | Anubis | 540 × 540 | 28 | 12 | 12 % | 375 | 434 | 4: 410 | 495 |
-//! | penguin | 540 × 540 | 29 | 5 | 7 % | 273 | 310 | 4: 330 | 371 |
-//! | jumping jacks | 540 × 540 | 20 | 1 | 17 % | 185 | 412 | 8: 207 | 555 |
+//! | walking boy | 420 × 540 | 15 | 12 | 18 % | 156 | 256 | 8: 215 | 352 |
+//! | running figure | 640 × 539 | 6 | 7 | 13 % | 101 | 167 | 8: 190 | 312 |
+//! | jumping girl | 540 × 540 | 34 | 12 | 16 % | 433 | 592 | 8: 554 | 715 |
+//! | the same, half the size | 270 × 270 | 34 | 12 | 16 % | 339 | 503 | 8: 400 | 625 |
+//! | the same, twice the size | 1080 × 1080 | 34 | 12 | 16 % | 631 | 742 | 8: 700 | 972 |
+//! | the same, four times the size | 2160 × 2160 | 34 | 12 | 16 % | 547 | 742 | 4: 572 | 1625 |
+//! | Anubis | 540 × 540 | 28 | 12 | 12 % | 375 | 430 | 4: 410 | 482 |
+//! | penguin | 540 × 540 | 29 | 5 | 7 % | 273 | 351 | 4: 330 | 404 |
+//! | jumping jacks | 540 × 540 | 20 | 1 | 17 % | 185 | 381 | 8: 207 | 503 |
 //!
-//! Snapping these shots took at most 151 MB, pictures over the footage at most 202 MB with 8 threads. An estimate that is too high costs some
-//! shots at a time on the first run; one that is too low may cost the shot.
+//! The estimate is the higher of the two figures everywhere. One that is too high costs some shots at a time on the first run;
+//! one that is too low may cost the shot.
 //!
 //! Limit: filling of large line drawings takes 320 bytes for each pixel and may take more than the estimate at its first run.
 //!
@@ -38,7 +43,8 @@
 use crate::limits;
 use rototoon::geometry::polygon::signed_area;
 use rototoon::pictures::decode::kept_size;
-use rototoon::scene::{Footage, FramePattern, Scene};
+use rototoon::pictures::sequence::KEPT_BYTES;
+use rototoon::scene::{Colour, Footage, FramePattern, Part, Scene};
 use std::path::Path;
 use std::sync::{Condvar, Mutex, PoisonError};
 
@@ -47,9 +53,11 @@ const WORKING_LINES: f64 = 540.0;
 /// Bytes for each working pixel of each frame.
 const FRAME: f64 = 8.0;
 /// Bytes for each working pixel within a part, of each frame.
-const PART: f64 = 300.0;
-/// Bytes for each pixel and thread, whatever the number of frames.
-const PIXEL: f64 = 70.0;
+const PART: f64 = 200.0;
+/// Bytes for each working pixel and thread of tracking.
+const TRACK: f64 = 60.0;
+/// Bytes for each pixel and thread of drawing.
+const DRAW: f64 = 70.0;
 /// Bytes of the program itself.
 const BASE: f64 = 50e6;
 /// Default budget where the system does not report its memory.
@@ -111,14 +119,14 @@ impl Drop for Share<'_> {
 pub fn estimate(scene: &Scene, threads: usize) -> u64 {
     let footage = &scene.footage;
     let (pixels, frames) = (footage.width as f64 * footage.height as f64, frames(footage) as f64);
-    let working = (WORKING_LINES / footage.height.max(1) as f64).powi(2);
+    let (working, threads) = ((WORKING_LINES / footage.height.max(1) as f64).powi(2), threads.max(1) as f64);
     // The greatest of all keys: a part may come near between them.
-    let area = |contours: &mut dyn Iterator<Item = f64>| contours.fold(0.0, f64::max);
-    let parts = scene.parts.iter().map(|part| area(&mut part.keys.values().map(|key| signed_area(key).abs())));
+    let area = |part: &Part| part.keys.values().map(|key| signed_area(key).abs()).fold(0.0, f64::max);
     // No part is larger than the picture; some reach far out of it.
-    let parts: f64 = parts.map(|area| area.min(pixels)).sum();
-    let each = working * (FRAME * pixels + PART * parts);
-    (BASE + frames * each + PIXEL * pixels * threads.max(1) as f64) as u64
+    let parts: f64 = scene.parts.iter().map(|part| area(part).min(pixels)).sum();
+    let pictures = (pixels * size_of::<Colour>() as f64 * frames).min(KEPT_BYTES as f64);
+    let track = working * (frames * (FRAME * pixels + PART * parts) + TRACK * pixels * threads);
+    (BASE + pictures + track.max(DRAW * pixels * threads)) as u64
 }
 
 /// Bytes of all frames of a footage in `folder`, decoded as their files have them; by the first frame, 0 if it cannot be read.
@@ -136,7 +144,6 @@ fn frames(footage: &Footage) -> u64 {
 mod tests {
     use super::*;
     use rototoon::geometry::Point;
-    use rototoon::scene::Part;
     use std::sync::atomic::{AtomicU64, Ordering};
 
     #[test]
@@ -178,12 +185,15 @@ mod tests {
             (640, 539, 6, 0.13, 8, 190e6),
             (540, 540, 34, 0.16, 1, 433e6),
             (540, 540, 34, 0.16, 8, 554e6),
-            (540, 540, 28, 0.12, 4, 410e6),
+            (270, 270, 34, 0.16, 8, 400e6),
+            (1080, 1080, 34, 0.16, 1, 631e6),
+            (2160, 2160, 34, 0.16, 1, 547e6),
+            (540, 540, 28, 0.12, 1, 375e6),
             (540, 540, 29, 0.07, 4, 330e6),
             (540, 540, 20, 0.17, 8, 207e6),
         ] {
             let bytes = estimate(&scene(width, height, frames, share), threads) as f64;
-            assert!((measured..3.0 * measured).contains(&bytes), "{width} × {height} × {frames}: {bytes}");
+            assert!((measured..2.5 * measured).contains(&bytes), "{width} × {height} × {frames}: {bytes}");
         }
         let mut huge = scene(9, 9, 9, 1.0);
         huge.footage = Footage { first: i32::MIN, last: i32::MAX, width: usize::MAX, ..huge.footage };
