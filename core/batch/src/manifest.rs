@@ -207,9 +207,7 @@ impl Reader<'_> {
             let place = format!("{place}[{index}]");
             match Step::read(value).and_then(|step| (self.check)(&step.words("a.json", "")).map(|()| step)) {
                 Ok(step) => {
-                    let same = |other: &&Step| step::same_output(&step, other);
-                    if let Some(other) = steps.iter().find(same) {
-                        let file = other.output.as_deref().unwrap_or_default();
+                    if let Some(file) = steps.iter().find_map(|other| step::same_output(other, &step)) {
                         self.problems.push(format!(
                             "{place}: found a second step that writes {file:?}, expected another name in `to`"
                         ));

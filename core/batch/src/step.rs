@@ -1,7 +1,8 @@
 //! The steps of a shot. Each is a subcommand of the command line program, described once: as its words.
 //!
 //! A step reads the newest document of its shot: the project, or what an earlier step wrote. The fields of a step in the
-//! manifest are the options of the subcommand, with `_` for `-`. `to` is the name of what it writes, without a folder.
+//! manifest are the options of the subcommand, with `_` for `-`. `to` is the name of what it writes, without a folder; so is
+//! `report` of `track`. A step writes nothing else, so that no file is written that the record does not know.
 
 use crate::manifest::safe_name;
 use rototoon::project::described;
@@ -51,6 +52,8 @@ pub struct Step {
     pub kind: Kind,
     /// Name or pattern of what it writes.
     pub output: Option<String>,
+    /// Name of the report that `track` also writes.
+    pub report: Option<String>,
     /// Options of the subcommand, as words.
     pub options: Vec<String>,
 }
@@ -70,12 +73,15 @@ impl Step {
             let known: Vec<_> = KINDS.iter().map(|(_, name, _)| *name).collect();
             return Err(format!("do: found {name:?}, expected one of {}", known.join(", ")));
         };
+        let output = output(kind, default, fields.get("to"))?;
+        let report =
+            fields.get("report").filter(|_| kind == Kind::Track).map(|name| report(name, &output)).transpose()?;
+        let known = |name: &str| name == "do" || name == "to" || (name == "report" && report.is_some());
         let mut options = Vec::new();
-        for (name, value) in fields.iter().filter(|(name, _)| *name != "do" && *name != "to") {
+        for (name, value) in fields.iter().filter(|(name, _)| !known(name)) {
             add_option(&mut options, name, value)?;
         }
-        let output = output(kind, default, fields.get("to"))?;
-        Ok(Self { kind, output, options })
+        Ok(Self { kind, output, report, options })
     }
 
     /// The subcommand.
@@ -108,6 +114,7 @@ impl Step {
             let prefix = if self.kind == Kind::Render { prefix.replace('%', "%%") } else { prefix.to_owned() };
             words.extend(["-o".to_owned(), format!("{prefix}{output}")]);
         }
+        words.extend(self.report.iter().map(|report| format!("--report={prefix}{report}")));
         words.extend(self.options.iter().cloned());
         words
     }
@@ -124,13 +131,31 @@ fn output(kind: Kind, default: Option<&str>, to: Option<&Value>) -> Result<Optio
     let Some(name) = to.map_or(default, Value::as_str) else {
         return Err(format!("to: found {}, expected the name of what is written, such as {example:?}", described(to)));
     };
+    own_name("to", name).map(Some)
+}
+
+/// The name of a report, beside the output of the same step.
+fn report(name: &Value, output: &Option<String>) -> Result<String, String> {
+    let example = "report.json";
+    let Some(text) = name.as_str() else {
+        let found = described(Some(name));
+        return Err(format!("report: found {found}, expected the name of what is written, such as {example:?}"));
+    };
+    if output.as_ref().is_some_and(|output| shape(output) == shape(text)) {
+        return Err(format!("report: found {text:?}, expected another name: the step writes its document there"));
+    }
+    own_name("report", text)
+}
+
+/// Checks the name of a file that a step writes into the shot's folder.
+fn own_name(field: &str, name: &str) -> Result<String, String> {
     if let Err(expected) = safe_name(name) {
-        return Err(format!("to: found {name:?}, expected {expected}: it is written into the shot's folder"));
+        return Err(format!("{field}: found {name:?}, expected {expected}: it is written into the shot's folder"));
     }
     if RESERVED.iter().any(|reserved| name.eq_ignore_ascii_case(reserved)) {
-        return Err(format!("to: found {name:?}, expected another name: this one belongs to the batch"));
+        return Err(format!("{field}: found {name:?}, expected another name: this one belongs to the batch"));
     }
-    Ok(Some(name.to_owned()))
+    Ok(name.to_owned())
 }
 
 fn add_option(words: &mut Vec<String>, name: &str, value: &Value) -> Result<(), String> {
@@ -153,13 +178,11 @@ fn add_option(words: &mut Vec<String>, name: &str, value: &Value) -> Result<(), 
     Ok(())
 }
 
-/// Whether two steps write the same file. Patterns of different text can meet too: those whose names agree outside of
-/// their numbers are taken as the same.
-pub fn same_output(a: &Step, b: &Step) -> bool {
-    match (&a.output, &b.output) {
-        (Some(a), Some(b)) => shape(a) == shape(b),
-        _ => false,
-    }
+/// The name of a file that two steps write, as the first has it. Patterns of different text can meet too: those whose names
+/// agree outside of their numbers are taken as the same.
+pub fn same_output<'a>(a: &'a Step, b: &Step) -> Option<&'a str> {
+    let shapes: Vec<String> = b.output.iter().chain(&b.report).map(|name| shape(name)).collect();
+    a.output.iter().chain(&a.report).find(|name| shapes.contains(&shape(name))).map(String::as_str)
 }
 
 /// A name in small letters with one sign for each number and each place of a number.
@@ -203,6 +226,10 @@ mod tests {
                 json!({"do": "render", "to": "m_%04d.exr", "what": "matte", "layers": true, "parts": ["a", "-b"], "line_width": 1.5}),
                 "render in.json -o .new-m_%04d.exr --what=matte --layers=on --parts=a --parts=-b --line-width=1.5",
             ),
+            (
+                json!({"do": "track", "report": "r.json", "preset": "zhou2011"}),
+                "track in.json -o .new-tracked.json --report=.new-r.json --preset=zhou2011",
+            ),
             (json!({"do": "fill", "sensitivity": 2}), "fill in.json -o .new-painted.json --sensitivity=2"),
             (json!({"do": "export", "to": "a.nk"}), "export in.json -o .new-a.nk"),
         ] {
@@ -219,6 +246,13 @@ mod tests {
             (json!({"do": "check", "to": "a"}), "to: found a name, expected none"),
             (json!({"do": "export", "to": "../a.svg"}), "to: found \"../a.svg\""),
             (json!({"do": "track", "to": "Batch.json"}), "to: found \"Batch.json\", expected another"),
+            (
+                json!({"do": "track", "report": "../../notes.txt"}),
+                "report: found \"../../notes.txt\", expected a name without",
+            ),
+            (json!({"do": "track", "report": "batch.json"}), "report: found \"batch.json\", expected another"),
+            (json!({"do": "track", "report": "Tracked.json"}), "report: found \"Tracked.json\", expected another"),
+            (json!({"do": "track", "report": 7}), "report: found 7, expected the name"),
             (json!({"do": "track", "output": "x"}), "output: not an option"),
             (json!({"do": "track", "threads": 9}), "threads: not an option"),
             (json!({"do": "track", "preset": {}}), "preset: found an object, expected a text"),
@@ -237,11 +271,11 @@ mod tests {
             ("a_%04d.png", "a_%04d.exr", false),
             ("100%.png", "100%.png", true),
         ] {
-            assert_eq!(same_output(&step(a), &step(b)), same, "{a} {b}");
+            assert_eq!(same_output(&step(a), &step(b)), same.then_some(a), "{a} {b}");
         }
-        assert!(!same_output(
-            &Step::read(&json!({"do": "check"})).unwrap(),
-            &Step::read(&json!({"do": "check"})).unwrap()
-        ));
+        let step = |value| Step::read(&value).unwrap();
+        let (check, track) = (step(json!({"do": "check"})), step(json!({"do": "track", "report": "r.json"})));
+        assert_eq!(same_output(&check, &check), None);
+        assert_eq!(same_output(&track, &step(json!({"do": "export", "to": "R.json"}))), Some("r.json"));
     }
 }

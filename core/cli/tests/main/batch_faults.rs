@@ -164,3 +164,17 @@ fn one_picture_may_have_a_plain_name() {
     season.good(&[]);
     assert!(season.path("out/sh0/m.png").is_file());
 }
+
+#[test]
+fn the_report_of_a_step_is_one_of_its_results() {
+    let season = Season::new(1);
+    fs::write(season.path("notes.json"), "mine").unwrap();
+    let track = |report: &str| json!([{"do": "track", "report": report}]);
+    season.manifest(&track("../../notes.json"), 1);
+    assert_eq!(season.run(&[]).status.code(), Some(2));
+    assert_eq!(fs::read_to_string(season.path("notes.json")).unwrap(), "mine");
+    season.manifest(&track("sure.json"), 1);
+    season.good(&[]);
+    assert!(season.record("sh0")["files"]["sure.json"].is_string());
+    assert!(fs::read_to_string(season.path("out/sh0/sure.json")).unwrap().contains("\"sure\""));
+}
