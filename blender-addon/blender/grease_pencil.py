@@ -60,6 +60,8 @@ LOOK = "rototoon_look"
 """Checksum of a stroke's material, radius, opacity and colours when the drawing was traced."""
 ALONG = "rototoon_along"
 """For each point its share of that stroke's length, 0 to 1."""
+FIELDS = "rototoon_fields"
+"""Number of the further fields that the stroke has in a document, such as its peg; 0 for none. The object keeps the fields."""
 TWEENED = "rototoon_tweened"
 """Whether the stroke is an in-between."""
 NEXT = "rototoon_next"
@@ -75,6 +77,7 @@ TYPES = {
     LINE: ("INT", "POINT"),
     LOOK: ("INT", "CURVE"),
     ALONG: ("FLOAT", "POINT"),
+    FIELDS: ("INT", "CURVE"),
     TWEENED: ("BOOLEAN", "CURVE"),
     NEXT: ("INT", "CURVE"),
     BEFORE: ("INT", "CURVE"),

@@ -1,7 +1,7 @@
 """Exchange: project documents into Blender and out of it, and contours as masks.
 
-`files` reads, checks and writes documents. `importing` makes strokes from a document, `traced` and `filled` make traced lines and paint
-and read them. `outlines` makes outlines for masks.
+`files` reads, checks and writes documents. `importing` makes contours from a document, `drawn` drawings, and `filled` paint, which it also
+reads. `drawn_out` reads drawings. Both use `stroke_fields`, `further` and `spacings`. `outlines` makes outlines for masks.
 
-May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`.
+May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`, `tween`.
 """

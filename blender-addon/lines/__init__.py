@@ -11,6 +11,7 @@ the artist's and are never written; their strokes are followed.
 `plan`                which drawings are followed, which frames are traced, as documents
 `looks`               material, radius and opacity of strokes
 `tracing`             one run: reads, traces in a thread, writes
+`given`               drawings that a document gives, as a layer
 `doubts`              which traced strokes are in doubt, and where
 `pairing`             the same strokes of two neighbouring drawings, and clicks that change them
 `outline`             strokes that bound a part, as a closed contour

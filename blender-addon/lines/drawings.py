@@ -27,8 +27,8 @@ class Layer:
     """The artist's drawings that have strokes."""
     blank: set[int] = field(default_factory=set)
     """The artist's drawings without strokes."""
-    other: set[int] = field(default_factory=set)
-    """In-betweens."""
+    other: dict[int, st.Content] = field(default_factory=dict)
+    """In-betweens. Only those that were asked for have their content."""
     made: dict[int, st.Content] = field(default_factory=dict)
     """Traced drawings. Only those that were asked for have their content."""
     edited: set[int] = field(default_factory=set)
@@ -39,7 +39,7 @@ class Layer:
     @property
     def kept(self) -> set[int]:
         """The frames that tracing does not write."""
-        return set(self.keys) | self.blank | self.other
+        return self.keys.keys() | self.blank | self.other.keys()
 
     def next_track(self, first: int, last: int) -> int:
         """The next free number, where traced drawings on the frames `first` to `last` are drawn anew."""
@@ -67,7 +67,7 @@ def sum_of(content: st.Content) -> int:
 
 
 def read(ob, names: Iterable[str], wanted: Iterable[int] | None = ()) -> list[Layer]:
-    """Sorts the drawings of layers. `wanted` are the frames of traced drawings whose content is needed, `None` for all."""
+    """Sorts the drawings of layers. `wanted` are the frames of generated drawings whose content is needed, `None` for all."""
     kept = records.read(ob.data)
     wanted = None if wanted is None else set(wanted)
     with gp.copied(ob.data) as data:
@@ -78,14 +78,18 @@ def _layer(name: str, layer, sums: dict[int, int], wanted: set[int] | None) -> L
     found = Layer(name)
     if layer is None:
         return found
+
+    def read_one(handle, frame: int) -> st.Content:
+        return st.read(handle) if wanted is None or frame in wanted else EMPTY
+
     for frame, (handle, kind) in gp.drawings(layer).items():
         strokes = len(gp.offsets(handle)) - 1
         tracks = gp.value(handle, gp.TRACK, strokes)
         found.highest[frame] = int(tracks.max(initial=0))
         if kind == gp.GENERATED and _is_traced(handle, sums.get(frame)):
-            found.made[frame] = st.read(handle) if wanted is None or frame in wanted else EMPTY
+            found.made[frame] = read_one(handle, frame)
         elif kind == gp.GENERATED and strokes and gp.value(handle, gp.TWEENED, strokes).all():
-            found.other.add(frame)
+            found.other[frame] = read_one(handle, frame)
         else:
             if strokes:
                 found.keys[frame] = st.read(handle)

@@ -139,6 +139,18 @@ def inks(colours: np.ndarray, lengths: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return found, np.asarray(colours, np.float64)[centres].reshape(-1, 3)[used]
 
 
+EXACT = 0.002
+"""Greatest difference of the values of a colour that is the same one."""
+
+
+def exact_material(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False, make: bool = True) -> int | None:
+    """Index of the object's material for just this colour, sRGB. If there is none it is made, or, without `make`, `None`."""
+    for place, known in line_materials.known(ob, fill):
+        if np.abs(known - colour).max() <= EXACT:
+            return place
+    return line_materials.make(ob, np.nan_to_num(colour).clip(0, 1), fill) if make else None
+
+
 def material(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
     """Index of the object's material for an ink, sRGB, or for a shape that is filled with it. It is made if none is near."""
     wanted = ink_lab(colour[None])[0]

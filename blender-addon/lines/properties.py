@@ -30,6 +30,7 @@ class LineSettings:
         description="Draw strokes that may be another stroke in black and yellow, and those that probably are in black and red",
         default=True,
     )
+    drawn_extra: bpy.props.StringProperty(description="Fields of the document's drawings and strokes that have no place in Blender, as JSON")
     doubt_frame: bpy.props.IntProperty(default=0)
     doubt_layer: bpy.props.StringProperty(default="")
     doubt_number: bpy.props.IntProperty(default=0)

@@ -5,8 +5,9 @@ Trace Drawing, Carry Strokes and the scripts' functions use it. Nothing in the f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,6 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
-from ..blender.placement import Mapper
 from ..common import jobs
 from . import drawings as dr
 from . import looks, numbers, records
@@ -50,6 +50,10 @@ class Done:
     confidence: dict[numbers.Key, dict[int, float]] = field(default_factory=dict)
     """Of each stroke, by scene frame."""
 
+
+Materials = Mapping[tuple[int, bool], int]
+"""By number, and whether it is a shape: the index of a material."""
+_NONE: Materials = MappingProxyType({})
 
 BREAK = 0.3
 """Share of the length of lines that belongs to strokes that end or begin, from which a frame is said."""
@@ -100,6 +104,10 @@ class Placed:
     """The probability that it is the stroke of its number."""
     fill: bool = False
     """Whether it is the outline of a solid shape, which is filled and has no line."""
+    opacity: float = 1.0
+    """Below 1 while it fades."""
+    fields: int = 0
+    """The number of its further fields in a document; 0 for none."""
 
     @property
     def place(self) -> tuple[bool, float, int]:
@@ -129,25 +137,9 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
             record = kept.setdefault(layer.name, records.Layer())
             _mark_keys(ob, layer, group, k, keyed, record, done)
             placed = _placed(group, layer, k, traced, keyed, plan)
-            yield from _write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
+            yield from write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
     ob.data.update_tag()
-    return done
-
-
-def draw(ob, name: str, strokes: dict[int, list[Placed]]) -> Done:
-    """Draws given strokes by scene frame, in the place of all traced drawings of a layer. The artist's drawings stay."""
-    guard.need_open([gp.find_layer(ob, name)])
-    (layer,) = dr.read(ob, [name])
-    target = gp.layer(ob, name)
-    dr.keep(ob, layer)
-    gp.remove_frames(target, sorted(layer.made))
-    layer.made = {}
-    placed = {frame: strokes[frame] for frame in sorted(strokes) if frame not in layer.kept}
-    done, kept = Done(), records.read(ob.data)
-    record = kept.setdefault(name, records.Layer())
-    jobs.drained(_write(ob, layer, Mapper(ob, placed, {}, [name]), 0, placed, looks.Looks(), record, done))
-    records.write(ob.data, kept)
     return done
 
 
@@ -232,16 +224,16 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
     return result
 
 
-def _write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, record, done: Done) -> Iterator[float]:
-    """Writes the strokes of one layer, with a step for each frame."""
+def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, record, done: Done, known: Materials = _NONE) -> Iterator[float]:
+    """Writes the strokes of one layer, with a step for each frame. `known` are materials that are given."""
     target = gp.find_layer(ob, layer.name)
     held = {frame for frame, strokes in placed.items() if strokes is None}
     placed = {frame: strokes for frame, strokes in placed.items() if strokes is not None}
     gp.remove_frames(target, sorted(held & layer.made.keys()))
     gp.make_frames(target, placed, gp.GENERATED)
-    handles, names, materials = gp.drawings(target), shown.names(), _materials(ob, placed, shown)
+    handles, names, materials = gp.drawings(target), shown.names(), materials_of(ob, placed, shown, known)
     for count, (frame, strokes) in enumerate(placed.items(), 1):
-        rows = _rows(frame, strokes, shown, names, materials, mapper.at(k, frame))
+        rows = rows_of(frame, strokes, shown, names, materials, mapper.at(k, frame))
         gp.replace_made(handles[frame][0], rows)
         if gp.drawings(target)[frame][1] != gp.GENERATED:
             gp.set_keyframe_type(target, {frame: gp.GENERATED})
@@ -279,10 +271,11 @@ def _length(points: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
 
-def _materials(ob, placed, shown: looks.Looks) -> dict[tuple[int, bool], int]:
-    """The material of each number that no stroke of the artist has, as a line and as a shape: one for each ink."""
+def materials_of(ob, placed, shown: looks.Looks, known: Materials = _NONE) -> Materials:
+    """The material of each number that no stroke of the artist has, as a line and as a shape: one for each ink. Those of `known` stay."""
     strokes = [each for strokes in placed.values() for each in strokes if each.number not in shown.sources]
-    found: dict[tuple[int, bool], int] = {}
+    strokes = [each for each in strokes if (each.number, each.fill) not in known]
+    found: dict[tuple[int, bool], int] = dict(known)
     for fill in (False, True):
         colours: dict[int, list[np.ndarray]] = {}
         lengths: dict[int, float] = {}
@@ -291,15 +284,15 @@ def _materials(ob, placed, shown: looks.Looks) -> dict[tuple[int, bool], int]:
             lengths[stroke.number] = lengths.get(stroke.number, 0.0) + len(stroke.points)
         if not colours:
             continue
-        known = list(colours)
-        means = np.nan_to_num(np.array([np.mean(colours[number], axis=0) for number in known]))
-        which, inks = looks.inks(means, np.array([lengths[number] for number in known]))
+        every = list(colours)
+        means = np.nan_to_num(np.array([np.mean(colours[number], axis=0) for number in every]))
+        which, inks = looks.inks(means, np.array([lengths[number] for number in every]))
         places = [looks.material(ob, colour, fill) for colour in inks]
-        found.update({(number, fill): places[ink] for number, ink in zip(known, which)})
+        found.update({(number, fill): places[ink] for number, ink in zip(every, which)})
     return found
 
 
-def _rows(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials, mapping) -> gp.Rows:
+def rows_of(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials: Materials, mapping) -> gp.Rows:
     """The strokes of a frame as attributes."""
     rows = gp.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32))
     points = np.concatenate([stroke.points for stroke in strokes]) if strokes else np.zeros((0, 2))

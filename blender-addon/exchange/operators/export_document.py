@@ -9,13 +9,15 @@ from ...blender.errors import Problem
 from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
-from .. import files, filled, traced
+from .. import drawn, drawn_out, files, filled
 
 
 class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     bl_idname = "rototoon.export_document"
     bl_label = "Export Document"
-    bl_description = "Write keys, corrections, tracks, snapped and traced lines and paint as a Rototoon project document"
+    bl_description = (
+        "Write keys, corrections, tracks, snapped lines, drawings, traced lines, in-betweens and paint as a Rototoon project document"
+    )
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
 
@@ -35,18 +37,27 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
         reading = document.read(context.object, results=True, needed=False)
         document.need_pictures(context.object, reading)
-        lines = traced.of(context.object)
-        if lines:
-            reading.document["traced"] = lines
+        lines = self._add_lines(context.object, reading.document)
         paint = self._add_paint(context.object, reading.document)
         files.save(path, reading.document)
         reshaped = snapping.reshaped(context.object)
         if reshaped:
             self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them anew")
         found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not (lines or paint) else []
-        found += [f"traced lines of {counted(len(lines), 'frame')}"] if lines else []
+        found += lines
         found += [f"paint of {counted(paint, 'frame')}"] if paint else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
+
+    def _add_lines(self, ob, document: dict) -> list[str]:
+        """Puts the drawings of the layer of lines into a document. Returns what they are, for the message."""
+        written = drawn_out.of(ob, drawn.pegs(document))
+        if written.fields:
+            drawn_out.put(document, written.fields)
+        if written.lost:
+            self.warn(f"left out: strokes with a point without a place (not a number), on {listed(sorted(written.lost))}")
+        found = [counted(written.keys, "drawing")] if written.keys else []
+        found += [f"traced lines of {counted(written.traced, 'frame')}"] if written.traced else []
+        return found + ([counted(written.between, "in-between")] if written.between else [])
 
     def _add_paint(self, ob, written: dict) -> int:
         """Puts paint into a document. Returns the number of frames that have some."""

@@ -8,14 +8,17 @@ from ...blender import footage, stage, view
 from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
-from ...common.wording import counted
-from .. import files, filled, importing, traced
+from ...common.wording import counted, listed
+from .. import drawn, files, filled, importing
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     bl_idname = "rototoon.import_document"
     bl_label = "Import Document"
-    bl_description = "Make strokes from a Rototoon project document: keys, corrections, tracks, snapped and traced lines, paint"
+    bl_description = (
+        "Make strokes from a Rototoon project document: keys, corrections, tracks, snapped lines, drawings, traced lines, in-betweens, "
+        "paint"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE"})
@@ -44,7 +47,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     def run(self, context) -> str:
         path = bpy.path.abspath(self.filepath)
         project = files.load(path)
-        traced.checked(project)
+        drawn.checked(project)
         filled.read(project)
         shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
         if self.into == "ACTIVE":
@@ -52,7 +55,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             if ob is None or ob.type != "GREASEPENCIL":
                 raise Problem("Make a Grease Pencil object active, or import into a new one")
             importing.need_open(ob)
-            traced.need_open(ob, project)
+            drawn.need_open(ob, project)
             filled.need_open(ob, project)
             stage.assign(ob, shot)
         else:
@@ -61,12 +64,24 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
         context.view_layer.update()
         importing.apply(ob, project)
-        lines, paint = traced.draw(ob, project), filled.draw(ob, project)
+        lines, paint = drawn.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
         ob.data.update_tag()
-        also = f" and {counted(lines, 'traced stroke')}" if lines else ""
-        also += f" and paint of {counted(paint, 'frame')}" if paint else ""
-        return f"{counted(len(ob.rototoon.parts), 'part')}{also} from {os.path.basename(path)}"
+        return f"{' and '.join(self._said(ob, lines, paint))} from {os.path.basename(path)}"
+
+    def _said(self, ob, lines, paint: int) -> list[str]:
+        """What came in, for the message."""
+        if lines.stayed:
+            self.warn(f"drawings of yours stay as they were, on {listed(sorted(lines.stayed))}")
+        if lines.left:
+            verb = "lies" if lines.left == 1 else "lie"
+            self.warn(f"left out: {counted(lines.left, 'in-between')} that {verb} between no two drawings of the document")
+        found = [counted(lines.keys, "drawing")] if lines.keys else []
+        found += [counted(lines.strokes, "traced stroke")] if lines.strokes else []
+        found += [counted(lines.between, "in-between")] if lines.between else []
+        found += [f"paint of {counted(paint, 'frame')}"] if paint else []
+        parts = [counted(len(ob.rototoon.parts), "part")] if len(ob.rototoon.parts) or not found else []
+        return parts + found
 
     def _shot(self, context, shot: dict, folder: str) -> stage.Shot:
         pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))

@@ -1,0 +1,213 @@
+"""The object's layer of lines as the drawings of a document: see `drawn` for the way in.
+
+The artist's drawings are `drawings`. Those of them that were traced or followed are in `traced` too, where their strokes have numbers.
+Numbers that only tweening gave are in `matches`. A stroke without a number, or with that of an earlier stroke of its drawing, gets a new one
+in the document.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..blender import colours, placement
+from ..blender import grease_pencil as gp
+from ..blender import strokes as st
+from ..lines import doubts
+from ..lines import drawings as dr
+from ..tween import pairs as tween_pairs
+from ..tween import records as tween_records
+from . import drawn, spacings, stroke_fields
+from .further import Further
+
+
+@dataclass
+class Written:
+    """What a layer gives a document."""
+
+    fields: dict[str, Any] = field(default_factory=dict)
+    keys: int = 0
+    traced: int = 0
+    """Number of traced drawings."""
+    between: int = 0
+    lost: set[int] = field(default_factory=set)
+    """Scene frames with a stroke that could not be written: one of its points has no place."""
+
+
+def of(ob, pegs: set[str]) -> Written:
+    """The drawings of the object's layer of lines in the form of a document. `pegs` are the names of the document's pegs."""
+    if gp.find_layer(ob, ob.rototoon.lines_layer) is None:
+        return Written()
+    return _Layer(ob, pegs).written()
+
+
+def put(document: dict[str, Any], fields: dict[str, Any]) -> None:
+    """Puts the drawings of a layer into a document, in the place of those that it has.
+
+    Earlier versions kept the drawings of an imported document beside the layer. Those on other frames stay.
+    """
+    kept = document.get("drawings")
+    before = {each["frame"]: each for each in kept if isinstance(each, dict) and type(each.get("frame")) is int} if isinstance(kept, list) else {}
+    now = {each["frame"]: each for each in fields.get("drawings", ())}
+    for name in drawn.FIELDS:
+        document.pop(name, None)
+    document.update(fields)
+    if before.keys() - now.keys():
+        every = before | now
+        document["drawings"] = [every[frame] for frame in sorted(every)]
+        # Pairs are those of neighbouring drawings.
+        document.pop("pairs", None)
+
+
+@dataclass
+class _Sheet:
+    """The strokes of a drawing."""
+
+    content: st.Content
+    strokes: dict[int, dict[str, Any]]
+    """The fields of each stroke, by its index in Blender."""
+    numbers: dict[int, int]
+    """The number of each stroke, from 1."""
+
+    @cached_property
+    def carried(self) -> bool:
+        """Whether strokes have their numbers since they were traced or followed."""
+        lines, tracks = self.content.point.get(gp.LINE), np.repeat(self.content.strokes(gp.TRACK), self.content.sizes)
+        return lines is not None and bool(((lines == tracks) & (tracks > 0)).any())
+
+    @property
+    def numbered(self) -> bool:
+        """Whether any stroke has a number."""
+        return bool((self.content.strokes(gp.TRACK) > 0).any())
+
+    @property
+    def tracks(self) -> list[int]:
+        """The numbers of the document."""
+        return [number - 1 for number in self.numbers.values()]
+
+
+class _Layer:
+    def __init__(self, ob, pegs: set[str]):
+        self._ob, self._pegs, self._offset = ob, pegs, ob.rototoon.frame_offset
+        (self._drawn,) = dr.read(ob, [ob.rototoon.lines_layer], None)
+        keys = {**self._drawn.keys, **dict.fromkeys(self._drawn.blank, dr.EMPTY)}
+        contents = {**keys, **self._drawn.made, **self._drawn.other}
+        mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
+        fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
+        self._sheets: dict[int, _Sheet] = {}
+        for frame, content in sorted(contents.items()):
+            strokes = stroke_fields.written(ob, content, mapper.at(0, frame), palette)
+            self._sheets[frame] = _Sheet(content, strokes, _numbers(content, strokes, fresh))
+        self._keys = sorted(keys)
+        self._further = Further(ob)
+
+    def written(self) -> Written:
+        fields = {
+            "drawings": self._drawings(),
+            "pairs": self._pairs(),
+            "traced": self._traced(),
+            "in_betweens": self._between(),
+            "matches": self._matches(),
+        }
+        lost = {frame for frame, sheet in self._sheets.items() if len(sheet.strokes) < len(sheet.content.sizes)}
+        drawn = self._drawn
+        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), lost)
+
+    def _more(self, sheet: _Sheet, index: int) -> dict[str, Any]:
+        return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), self._pegs)
+
+    def _drawings(self) -> list[dict[str, Any]]:
+        spans = tween_records.read(self._ob.data).get(self._drawn.name, tween_records.Layer()).spans
+        found = []
+        for frame, after in itertools.zip_longest(self._keys, self._keys[1:]):
+            fields = dict(self._further.of_drawing(frame - self._offset))
+            span = spans.get(frame)
+            if span is not None and span.last == after:
+                spacing = spacings.written(span.choices, frame, after, fields.get("spacing", "smooth"))
+                fields = {**fields, "spacing": spacing}
+            if fields.get("spacing") in ("smooth", None):
+                fields.pop("spacing", None)
+            sheet = self._sheets[frame]
+            strokes = [stroke | self._more(sheet, i) for i, stroke in sheet.strokes.items()]
+            found.append({"frame": frame - self._offset, **fields, "strokes": strokes})
+        return found
+
+    def _pairs(self) -> list[dict[str, Any]]:
+        found = []
+        for frame, after in itertools.pairwise(self._keys):
+            one, other = self._sheets[frame], self._sheets[after]
+            places = [{index: k for k, index in enumerate(sheet.strokes)} for sheet in (one, other)]
+            for i, j in tween_pairs.between(one.content, other.content):
+                if i in places[0] and (j < 0 or j in places[1]):
+                    found.append({"frame": frame - self._offset, "from": places[0][i], "to": places[1].get(j)})
+        return found
+
+    def _traced(self) -> list[dict[str, Any]]:
+        wanted = [frame for frame in self._sheets if frame in self._drawn.made or frame in self._keys and self._sheets[frame].carried]
+        return [{"frame": frame - self._offset, "strokes": self._numbered(frame)} for frame in wanted]
+
+    def _numbered(self, frame: int) -> list[dict[str, Any]]:
+        sheet, found = self._sheets[frame], []
+        # What the artist drew is beyond doubt.
+        points = sheet.content.point.get(gp.CONFIDENCE) if frame in self._drawn.made else None
+        sure = doubts.of_strokes(points, sheet.content.starts).round(3)
+        for i, stroke in sheet.strokes.items():
+            found.append({"track": sheet.numbers[i] - 1, **stroke})
+            if sure[i] < 1:
+                found[-1]["confidence"] = float(sure[i])
+        return found
+
+    def _between(self) -> list[dict[str, Any]]:
+        found = []
+        for frame in sorted(self._drawn.other):
+            sheet, strokes = self._sheets[frame], []
+            seen, full = _opacities(sheet.content), self._full(frame)
+            for i, stroke in sheet.strokes.items():
+                number = sheet.numbers[i]
+                share = round(float(min(seen[i] / max(full.get(number, 1.0), 1e-6), 1.0)), 4)
+                strokes.append({"track": number - 1, **stroke, **self._more(sheet, i), "opacity": share})
+            found.append({"frame": frame - self._offset, "strokes": strokes})
+        return found
+
+    def _full(self, frame: int) -> dict[int, float]:
+        """By number the opacity of strokes that do not fade: that on the keys around a frame."""
+        around = max((k for k in self._keys if k < frame), default=None), min((k for k in self._keys if k > frame), default=None)
+        found: dict[int, float] = {}
+        for sheet in (self._sheets[key] for key in around if key is not None):
+            for i, value in enumerate(_opacities(sheet.content)):
+                number = sheet.numbers.get(i, 0)
+                found[number] = max(found.get(number, 0.0), float(value))
+        return found
+
+    def _matches(self) -> list[dict[str, Any]]:
+        """The numbers of keys that tweening has numbered."""
+        found = []
+        for frame, after in itertools.pairwise(self._keys):
+            one, other = self._sheets[frame], self._sheets[after]
+            if one.numbered and other.numbered and not (one.carried and other.carried):
+                tracks = [one.tracks, other.tracks]
+                found.append({"frame": frame - self._offset, "next": after - self._offset, "tracks": tracks})
+        return found
+
+
+def _numbers(content: st.Content, strokes, fresh) -> dict[int, int]:
+    """The number of each stroke. A copied stroke has its original's number; the second one counts as a new stroke."""
+    tracks, taken, found = content.strokes(gp.TRACK), {0}, {}
+    for i in strokes:
+        number = int(tracks[i]) if int(tracks[i]) not in taken else next(fresh)
+        taken.add(number)
+        found[i] = number
+    return found
+
+
+def _opacities(content: st.Content) -> np.ndarray:
+    """The mean opacity of each stroke."""
+    points, some = content.point.get("opacity"), content.sizes > 0
+    found = np.ones(len(content.sizes))
+    if points is not None and some.any():
+        found[some] = np.add.reduceat(points.astype(np.float64), content.starts[:-1][some]) / content.sizes[some]
+    return found

@@ -1,0 +1,187 @@
+"""Drawings that a document gives, as a layer of lines: the artist's, traced ones and in-betweens.
+
+Drawings of the artist become keys. Traced drawings and in-betweens are generated, as Trace Drawing and In-between write them, so that a
+change by the artist is noticed. What the artist has on the layer already stays; generated drawings are replaced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..blender import grease_pencil as gp
+from ..blender import guard
+from ..blender.placement import Mapper
+from ..common import jobs
+from ..tween import keys as ks
+from ..tween import pairs, tweening
+from ..tween import records as tween_records
+from ..tween.charts import Choices
+from . import drawings as dr
+from . import looks, records, tracing
+
+Strokes = Mapping[int, list[tracing.Placed]]
+"""By scene frame, from back to front."""
+
+
+@dataclass
+class Film:
+    """The drawings of a document, by scene frame."""
+
+    keys: dict[int, list[tracing.Placed]] = field(default_factory=dict)
+    """The artist's. A stroke without a number has 0."""
+    followed: set[int] = field(default_factory=set)
+    """The keys whose numbers are those of traced strokes."""
+    traced: dict[int, list[tracing.Placed]] = field(default_factory=dict)
+    between: dict[int, list[tracing.Placed]] = field(default_factory=dict)
+    spans: dict[tuple[int, int], Choices] = field(default_factory=dict)
+    """The choices from which the in-betweens of neighbouring keys were drawn."""
+    pairs: list[tuple[int, int, int]] = field(default_factory=list)
+    """Pairs that the artist made: the frame of the earlier key, the index of its stroke, and that of the next key's stroke, -1 for
+    none."""
+
+
+@dataclass
+class Done:
+    """What was drawn."""
+
+    keys: int = 0
+    strokes: int = 0
+    """Number of different traced strokes."""
+    between: int = 0
+    stayed: set[int] = field(default_factory=set)
+    """Frames with a drawing of the artist's own, which was not replaced by that of the document."""
+    left: int = 0
+    """Number of in-betweens that do not lie between two keys of the document."""
+
+
+def draw(ob, name: str, film: Film) -> Done:
+    """Draws a film on the layer `name`, in the place of all generated drawings there."""
+    guard.need_open([gp.find_layer(ob, name)])
+    target = gp.layer(ob, name)
+    own = _cleared(ob, name, target)
+    keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}
+    traced = {frame: strokes for frame, strokes in sorted(film.traced.items()) if frame not in own | film.keys.keys()}
+    done = Done(keys=len(keys), stayed=own & film.keys.keys())
+    mapper = Mapper(ob, {*keys, *traced, *film.between}, {}, [name])
+    kept = records.read(ob.data)
+    record = kept.setdefault(name, records.Layer())
+    _write_keys(ob, target, mapper, keys, film.followed, record)
+    written = tracing.Done()
+    (layer,) = dr.read(ob, [name])
+    known = _known(ob, traced)
+    jobs.drained(tracing.write(ob, layer, mapper, 0, traced, looks.Looks(), record, written, known))
+    records.write(ob.data, kept)
+    done.strokes = len(written.numbers)
+    _pair(target, keys.keys(), film)
+    _draw_between(ob, target, mapper, film, keys.keys(), done)
+    return done
+
+
+def _cleared(ob, name: str, target) -> set[int]:
+    """Removes all generated drawings of a layer, and returns the frames of the artist's."""
+    kept = tween_records.read(ob.data)
+    tweening.adopt(target, ks.frames_of(target, kept.get(name, tween_records.Layer())).edited)
+    (layer,) = dr.read(ob, [name])
+    dr.keep(ob, layer)
+    gp.remove_frames(target, sorted(layer.made.keys() | layer.other.keys()))
+    if kept.pop(name, None) is not None:
+        tween_records.write(ob.data, kept)
+    return set(layer.kept - layer.other.keys())
+
+
+def _known(ob, drawn: Strokes) -> dict[tuple[int, bool], int]:
+    """The materials of strokes whose colour is just that of a material of the object, by number."""
+    colours: dict[tuple[int, bool], list[np.ndarray]] = {}
+    for stroke in (stroke for strokes in drawn.values() for stroke in strokes):
+        colours.setdefault((stroke.number, stroke.fill), []).append(stroke.colour)
+    places = {key: looks.exact_material(ob, np.mean(each, axis=0), key[1], make=False) for key, each in colours.items()}
+    return {key: place for key, place in places.items() if place is not None}
+
+
+def _write_keys(ob, target, mapper: Mapper, keys: Strokes, followed: set[int], record: records.Layer) -> None:
+    gp.make_frames(target, keys, gp.KEYFRAME)
+    handles = gp.drawings(target)
+    for frame, strokes in keys.items():
+        rows = _rows(ob, frame, strokes, mapper)
+        rows.values[gp.MADE] = np.zeros(len(strokes), bool)
+        if frame in followed:
+            record.numbers[frame] = [stroke.number for stroke in strokes if stroke.number]
+        else:
+            rows.values[gp.LINE] = np.zeros(int(rows.sizes.sum()), np.int32)
+        gp.append(handles[frame][0], rows)
+
+
+def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper) -> gp.Rows:
+    """Strokes of a frame, each with a material of just its colour."""
+    numbers = np.array([stroke.number for stroke in strokes], np.int32)
+    # Materials and fills go by numbers. Strokes without a number have colours of their own, so all get others meanwhile.
+    own = [replace(stroke, number=i) for i, stroke in enumerate(strokes, 1)]
+    materials = {(stroke.number, stroke.fill): looks.exact_material(ob, stroke.colour, stroke.fill) for stroke in own}
+    rows = tracing.rows_of(frame, own, looks.Looks(), [], materials, mapper.at(0, frame))
+    rows.values[gp.TRACK] = numbers
+    rows.values[gp.LINE] = np.repeat(numbers, rows.sizes)
+    if any(stroke.fields for stroke in strokes):
+        rows.values[gp.FIELDS] = np.array([stroke.fields for stroke in strokes], np.int32)
+    return rows
+
+
+def _pair(target, written, film: Film) -> None:
+    """Stores the pairs that the artist made on the strokes of neighbouring keys."""
+    drawings, frames = gp.drawings(target), sorted(film.keys)
+    following = dict(zip(frames, frames[1:]))
+    for frame, i, j in film.pairs:
+        after = following.get(frame)
+        if frame not in written or after not in written:
+            continue
+        hand = pairs.Hand(drawings[frame][0], drawings[after][0])
+        if j < 0:
+            hand.alone(0, i)
+        else:
+            hand.pair(i, j)
+
+
+def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> None:
+    """Draws the in-betweens of neighbouring keys of the film, and notes from what they were drawn."""
+    kept = tween_records.read(ob.data)
+    record = kept.setdefault(target.name, tween_records.Layer())
+    there = ks.frames_of(target, record)
+    spans = [span for span in zip(there.keys, there.keys[1:]) if span in film.spans and not there.blank & set(span) and keys >= set(span)]
+    drawn: dict[tuple[int, int], dict[int, int]] = {}
+    for first, last in spans:
+        inside = {frame: strokes for frame, strokes in sorted(film.between.items()) if first < frame < last and strokes}
+        if inside:
+            gp.make_frames(target, inside, gp.KEYFRAME)
+            gp.set_keyframe_type(target, dict.fromkeys(inside, gp.GENERATED))
+            drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes) for frame, strokes in inside.items()}
+    done.between = sum(map(len, drawn.values()))
+    done.left = len(film.between.keys() - set(there.keys)) - done.between
+    if drawn:
+        _note(ob, target, record, {span: film.spans[span] for span in drawn}, drawn)
+        tween_records.write(ob.data, kept)
+
+
+def _write_between(ob, target, mapper: Mapper, frame: int, strokes: list[tracing.Placed]) -> int:
+    """Draws one in-between. Returns its checksum."""
+    rows, count = _rows(ob, frame, strokes, mapper), len(strokes)
+    rows.values[gp.MADE], rows.values[gp.TWEENED] = np.zeros(count, bool), np.ones(count, bool)
+    rows.values[gp.LINE] = np.zeros(int(rows.sizes.sum()), np.int32)
+    opacities = np.array([stroke.opacity for stroke in strokes], np.float32)
+    if (opacities < 1).any():
+        rows.values["opacity"] = np.repeat(opacities, rows.sizes)
+        rows.values["fill_opacity"] = opacities
+    gp.append(gp.drawings(target)[frame][0], rows)
+    return tween_records.checksum(rows.values["position"])
+
+
+def _note(ob, target, record: tween_records.Layer, spans: dict[tuple[int, int], Choices], drawn) -> None:
+    """Records in-betweens as if they had been drawn here: they are up to date until something changes."""
+    plan = tweening.plan(ob, [target], lambda *_: spans, again=True)
+    for call in plan.calls:
+        for k in call.spans:
+            span = call.sheet.frames[k], call.sheet.frames[k + 1]
+            record.spans[span[0]] = tween_records.Span(span[1], call.sheet.digests[k], spans[span], drawn[span])
+    numbers = [gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1) for handle, _ in gp.drawings(target).values()]
+    record.next_track = max(int(each.max(initial=0)) for each in numbers) + 1
