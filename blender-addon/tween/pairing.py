@@ -132,16 +132,10 @@ class Pairing:
         for number, (layer, matches) in enumerate(zip(self._layers, found)):
             layer.call.matches = matches
             split = len(layer.world[0])
-            for (kind, earlier, later, flags), (_, sure) in zip(matches.rows.tolist(), matches.values.tolist()):
+            marks = pairs.Hand(*layer.handles).values()
+            for (kind, earlier, later, _), (_, sure) in zip(matches.rows.tolist(), matches.values.tolist()):
                 later = later - split if later >= 0 else -1
-                by_hand = bool(flags & tween.BY_HAND) or (
-                    kind in (tween.VANISHED, tween.APPEARED) and self._is_alone(number, earlier, later)
-                )
-                self.pairs.append(Pair(number, kind, earlier, later, by_hand, sure))
-
-    def _is_alone(self, number: int, earlier: int, later: int) -> bool:
-        to, of = pairs.Hand(*self._layers[number].handles).values()
-        return (earlier >= 0 and to[earlier] == pairs.NONE) or (later >= 0 and of[later] == pairs.NONE)
+                self.pairs.append(Pair(number, kind, earlier, later, _is_by_hand(marks, earlier, later), sure))
 
     def store(self) -> None:
         """Stores the numbers of the strokes of all keys."""
@@ -281,6 +275,14 @@ class Pairing:
         if pieces:
             said += f", {counted(pieces, 'piece')}"
         return said + (f", {alone} without counterpart" if alone else "")
+
+
+def _is_by_hand(marks: tuple[np.ndarray, np.ndarray], earlier: int, later: int) -> bool:
+    """Whether the artist made a pair, or freed a stroke. Pairs of carried strokes are given to the library, too, and are not the artist's."""
+    to, of = marks
+    if earlier >= 0 and later >= 0:
+        return bool(to[earlier] > 0 and to[earlier] == of[later])
+    return bool((earlier >= 0 and to[earlier] == pairs.NONE) or (later >= 0 and of[later] == pairs.NONE))
 
 
 class _Change:

@@ -1,12 +1,13 @@
-"""Pairs of strokes that the artist made, stored on the strokes.
+"""Pairs of strokes that are given: those that the artist made, and those of carried strokes. The library finds the others.
 
-The two strokes of a pair carry the same number, one as `NEXT`, the other as `BEFORE`. So a pair survives when a stroke is moved,
+The two strokes of an artist's pair carry the same number, one as `NEXT`, the other as `BEFORE`. So it survives when a stroke is moved,
 reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from rototoon.lines import doubts
 
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
@@ -26,6 +27,36 @@ def between(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
             pairs.append((i, found.pop(number)))
     pairs.extend((NONE, int(j)) for j in np.flatnonzero(of == NONE))
     return pairs
+
+
+def given(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
+    """As `between`, with the strokes that are the same since they were traced or carried. A decision of the artist wins."""
+    found = between(earlier, later)
+    decided = [{pair[side] for pair in found} for side in (0, 1)]
+    places = {number: j for j, number in reversed(list(enumerate(carried(later)))) if number and j not in decided[1]}
+    for i, number in enumerate(carried(earlier)):
+        if number in places and i not in decided[0]:
+            # A copied stroke has its original's number; the second one is matched.
+            found.append((i, places.pop(number)))
+    return found
+
+
+def carried(content: st.Content) -> list[int]:
+    """The number that tracing or carrying gave each stroke; 0 for strokes that were drawn since, or are probably another one.
+
+    In-between gives strokes numbers, too. It found these itself, and would repeat its mistakes, so they do not count.
+    """
+    tracks, starts = content.strokes(gp.TRACK).tolist(), content.starts
+    lines, sure, fine = content.point.get(gp.LINE), content.point.get(gp.CONFIDENCE), content.finite()
+    if lines is None:
+        return [0] * len(tracks)
+    spans = [slice(a, b) for a, b in zip(starts, starts[1:])]
+    found = [track if fine[i] and (lines[spans[i]] == track).mean() > 0.5 else 0 for i, track in enumerate(tracks)]
+    if sure is not None:
+        known = {i: {0: float(np.nan_to_num(sure[spans[i]]).mean().clip(0, 1))} for i, track in enumerate(found) if track}
+        for doubt in doubts(known):
+            found[doubt.track] = 0 if doubt.lost else found[doubt.track]
+    return found
 
 
 class Hand:

@@ -143,9 +143,9 @@ class Sheet:
         found = self.choices[span].leaving
         return {"leave": list(self.size)} if found == "LEAVE" else found.lower()
 
-    def by_hand(self, span: int) -> list[list[tuple[int, int]]]:
-        """For each layer the artist's pairs."""
-        return [pairs.between(a, b) for a, b in zip(self.contents[span], self.contents[span + 1])]
+    def given(self, span: int) -> list[list[tuple[int, int]]]:
+        """For each layer the pairs that need not be found: the artist's, and those of carried strokes."""
+        return [pairs.given(a, b) for a, b in zip(self.contents[span], self.contents[span + 1])]
 
     def read(self, ob) -> None:
         """Reads the drawings for the wanted spans, and makes the digest of each span."""
@@ -160,7 +160,7 @@ class Sheet:
             for key in around:
                 summed.update(sums[key])
             told = [VERSION, self.layers, [self.frames[key] for key in around], choices.shared()]
-            told += [self.spacing(key) for key in around[:-1]] + [self.by_hand(key) for key in around[:-1]]
+            told += [self.spacing(key) for key in around[:-1]] + [self.given(key) for key in around[:-1]]
             told.append(choices.frames(self.frames[span], self.frames[span + 1]))
             # Newer choices are added only where they matter, so that digests of earlier versions stay valid.
             told += [self.pegs_of(span)] if self.pegs_of(span) else []
@@ -209,7 +209,7 @@ def lay_out(ob, sheet: Sheet) -> Laid:
     joined = {
         name: np.concatenate(each) if each else np.zeros(empty.get(name, 0)) for name, each in columns.items()
     }
-    by_hand = _by_hand(sheet, first)
+    given = _given(sheet, first)
     drawings = tween.Drawings(
         Strokes(
             np.concatenate([[0], np.cumsum(joined["sizes"])]).astype(np.int32),
@@ -220,17 +220,17 @@ def lay_out(ob, sheet: Sheet) -> Laid:
         np.array(sheet.frames, np.int32),
         np.ascontiguousarray(joined["colours"], np.float64),
         np.ascontiguousarray(joined["labels"], np.int32),
-        np.array(by_hand, np.int32).reshape(-1, 2),
+        np.array(given, np.int32).reshape(-1, 2),
     )
     return Laid(drawings, first, joined["away"], joined["rows"].astype(np.int64))
 
 
-def _by_hand(sheet: Sheet, first: dict[tuple[int, int], int]) -> list[list[int]]:
-    """The artist's pairs of all spans, by the strokes' indices in the sheet."""
-    by_hand = []
+def _given(sheet: Sheet, first: dict[tuple[int, int], int]) -> list[list[int]]:
+    """The given pairs of all spans, by the strokes' indices in the sheet."""
+    given = []
     for span in range(len(sheet.frames) - 1):
         if span in sheet.contents and span + 1 in sheet.contents:
-            for layer, found in enumerate(sheet.by_hand(span)):
+            for layer, found in enumerate(sheet.given(span)):
                 starts = first[span, layer], first[span + 1, layer]
-                by_hand += [[i if i < 0 else i + starts[0], j if j < 0 else j + starts[1]] for i, j in found]
-    return by_hand
+                given += [[i if i < 0 else i + starts[0], j if j < 0 else j + starts[1]] for i, j in found]
+    return given
