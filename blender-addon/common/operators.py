@@ -81,11 +81,16 @@ class OnShapes(OnDrawing):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = OnContours.lacking(ob, changes)
-        if why and gp.is_drawing(ob) and ob.rototoon.pattern:
-            others = [gp.find_layer(ob, name) for name in (ob.rototoon.lines_layer, ob.rototoon.fills_layer)]
-            if any(layer is not None and gp.has_strokes(layer) for layer in others):
-                return super().lacking(ob, changes)
-        return why
+        if not why or super().lacking(ob, changes) or not ob.rototoon.pattern:
+            return why
+        settings = ob.rototoon
+        others = [gp.find_layer(ob, name) for name in (settings.lines_layer, settings.fills_layer)]
+        if any(layer is not None and gp.has_strokes(layer) for layer in others):
+            return ""
+        return (
+            f'Found no contours on the layer "{settings.contours_layer}", no lines on "{settings.lines_layer}" and no paint on '
+            f'"{settings.fills_layer}": draw there, or choose the layer of your lines in the panel Lines'
+        )
 
 
 class OnArmature:

@@ -209,6 +209,17 @@ def test_drawings_that_an_earlier_version_kept_beside_the_layer_stay(addon, trac
     assert [each["frame"] for each in found["drawings"]] == [2, 3] and found["drawings"][0] == old["drawings"][0] and found["note"] == 1
 
 
+def test_lines_on_another_layer_are_told(addon, film, tmp_path):
+    ls.put(addon, film, "Ink", 1, [(ls.lines(0)[4][0], False)])
+    with pytest.raises(RuntimeError, match='no contours on the layer "Contours", no lines on "Lines" and no paint on "Paint"'):
+        exported(tmp_path / "no.json")
+    ls.put(addon, film, "Lines", 1, [(ls.lines(0)[3][0], False)])
+    exported(tmp_path / "lines.json")
+    assert said(addon).warnings == ('left out: lines on "Ink"; those of "Lines" are written, the layer in the panel Lines',)
+    film.rototoon.lines_layer = "Ink"
+    assert len(exported(tmp_path / "ink.json")["drawings"]) == 1
+
+
 @pytest.mark.parametrize(
     ("fields", "message"),
     [

@@ -4,11 +4,13 @@ import os
 
 import bpy
 
+from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender.errors import Problem
 from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
+from ...lines import drawings
 from .. import drawn, drawn_out, files, filled
 
 
@@ -53,11 +55,19 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         written = drawn_out.of(ob, drawn.pegs(document))
         if written.fields:
             drawn_out.put(document, written.fields)
+        self._warn_of_others(ob)
         if written.lost:
             self.warn(f"left out: strokes with a point without a place (not a number), on {listed(sorted(written.lost))}")
         found = [counted(written.keys, "drawing")] if written.keys else []
         found += [f"traced lines of {counted(written.traced, 'frame')}"] if written.traced else []
         return found + ([counted(written.between, "in-between")] if written.between else [])
+
+    def _warn_of_others(self, ob) -> None:
+        """Says which layers have lines that are not written."""
+        name = ob.rototoon.lines_layer
+        others = [f'"{layer.name}"' for layer in drawings.layers(ob) if layer.name != name and gp.has_strokes(layer)]
+        if others:
+            self.warn(f'left out: lines on {", ".join(others)}; those of "{name}" are written, the layer in the panel Lines')
 
     def _add_paint(self, ob, written: dict) -> int:
         """Puts paint into a document. Returns the number of frames that have some."""
