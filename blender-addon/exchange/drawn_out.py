@@ -117,8 +117,8 @@ class _Layer:
         drawn = self._drawn
         return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), lost)
 
-    def _more(self, sheet: _Sheet, index: int) -> dict[str, Any]:
-        return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), self._pegs)
+    def _more(self, sheet: _Sheet, index: int, pegs: set[str]) -> dict[str, Any]:
+        return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), pegs)
 
     def _drawings(self) -> list[dict[str, Any]]:
         spans = tween_records.read(self._ob.data).get(self._drawn.name, tween_records.Layer()).spans
@@ -132,7 +132,7 @@ class _Layer:
             if fields.get("spacing") in ("smooth", None):
                 fields.pop("spacing", None)
             sheet = self._sheets[frame]
-            strokes = [stroke | self._more(sheet, i) for i, stroke in sheet.strokes.items()]
+            strokes = [stroke | self._more(sheet, i, self._pegs) for i, stroke in sheet.strokes.items()]
             found.append({"frame": frame - self._offset, **fields, "strokes": strokes})
         return found
 
@@ -169,7 +169,8 @@ class _Layer:
             for i, stroke in sheet.strokes.items():
                 number = sheet.numbers[i]
                 share = round(float(min(seen[i] / max(full.get(number, 1.0), 1e-6), 1.0)), 4)
-                strokes.append({"track": number - 1, **stroke, **self._more(sheet, i), "opacity": share})
+                # Pegs have moved it already.
+                strokes.append({"track": number - 1, **stroke, **self._more(sheet, i, set()), "opacity": share})
             found.append({"frame": frame - self._offset, "strokes": strokes})
         return found
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import guard, line_materials
 from ..blender.placement import Mapper
 from ..common import jobs
 from ..tween import keys as ks
@@ -24,6 +24,8 @@ from . import looks, records, tracing
 
 Strokes = Mapping[int, list[tracing.Placed]]
 """By scene frame, from back to front."""
+Inks = Mapping[tuple[int, bool], np.ndarray]
+"""By number, and whether it is a shape: the colour of a material."""
 
 
 @dataclass
@@ -105,7 +107,7 @@ def _write_keys(ob, target, mapper: Mapper, keys: Strokes, followed: set[int], r
     gp.make_frames(target, keys, gp.KEYFRAME)
     handles = gp.drawings(target)
     for frame, strokes in keys.items():
-        rows = _rows(ob, frame, strokes, mapper)
+        rows = _rows(ob, frame, strokes, mapper, {})
         rows.values[gp.MADE] = np.zeros(len(strokes), bool)
         if frame in followed:
             record.numbers[frame] = [stroke.number for stroke in strokes if stroke.number]
@@ -114,18 +116,35 @@ def _write_keys(ob, target, mapper: Mapper, keys: Strokes, followed: set[int], r
         gp.append(handles[frame][0], rows)
 
 
-def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper) -> gp.Rows:
-    """Strokes of a frame, each with a material of just its colour."""
+def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: Inks) -> gp.Rows:
+    """Strokes of a frame, each with a material of just its colour, or of that in `inks` and tinted."""
     numbers = np.array([stroke.number for stroke in strokes], np.int32)
     # Materials and fills go by numbers. Strokes without a number have colours of their own, so all get others meanwhile.
     own = [replace(stroke, number=i) for i, stroke in enumerate(strokes, 1)]
-    materials = {(stroke.number, stroke.fill): looks.exact_material(ob, stroke.colour, stroke.fill) for stroke in own}
+    colours = [inks.get((stroke.number, stroke.fill), stroke.colour) for stroke in strokes]
+    wanted = {(tuple(colour), stroke.fill): (colour, stroke.fill) for colour, stroke in zip(colours, strokes)}
+    places = {key: looks.exact_material(ob, *each) for key, each in wanted.items()}
+    materials = {(each.number, each.fill): places[tuple(colour), each.fill] for colour, each in zip(colours, own)}
     rows = tracing.rows_of(frame, own, looks.Looks(), [], materials, mapper.at(0, frame))
+    _tint(rows, strokes, colours)
     rows.values[gp.TRACK] = numbers
     rows.values[gp.LINE] = np.repeat(numbers, rows.sizes)
     if any(stroke.fields for stroke in strokes):
         rows.values[gp.FIELDS] = np.array([stroke.fields for stroke in strokes], np.int32)
     return rows
+
+
+def _tint(rows: gp.Rows, strokes: list[tracing.Placed], inks: list[np.ndarray]) -> None:
+    """Colours the strokes whose colour is not that of their material."""
+    tints = np.zeros((len(strokes), 4), np.float32)
+    for tint, stroke, ink in zip(tints, strokes, inks):
+        if np.abs(stroke.colour - ink).max() > looks.EXACT:
+            tint[:] = *line_materials.to_linear(stroke.colour), 1.0
+    fills = np.array([stroke.fill for stroke in strokes], bool)
+    if tints[~fills].any():
+        rows.values["vertex_color"] = np.repeat(np.where(fills[:, None], 0, tints), rows.sizes, axis=0)
+    if tints[fills].any():
+        rows.values["fill_color"] = np.where(fills[:, None], tints, 0)
 
 
 def _pair(target, written, film: Film) -> None:
@@ -153,9 +172,12 @@ def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> N
     for first, last in spans:
         inside = {frame: strokes for frame, strokes in sorted(film.between.items()) if first < frame < last and strokes}
         if inside:
+            # On its way a stroke has the material of its keys: another one for each frame would be too many.
+            ends = [stroke for key in (last, first) for stroke in film.keys[key]]
+            inks = {(stroke.number, stroke.fill): stroke.colour for stroke in ends if stroke.number}
             gp.make_frames(target, inside, gp.KEYFRAME)
             gp.set_keyframe_type(target, dict.fromkeys(inside, gp.GENERATED))
-            drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes) for frame, strokes in inside.items()}
+            drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes, inks) for frame, strokes in inside.items()}
     done.between = sum(map(len, drawn.values()))
     done.left = len(film.between.keys() - set(there.keys)) - done.between
     if drawn:
@@ -163,9 +185,9 @@ def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> N
         tween_records.write(ob.data, kept)
 
 
-def _write_between(ob, target, mapper: Mapper, frame: int, strokes: list[tracing.Placed]) -> int:
+def _write_between(ob, target, mapper: Mapper, frame: int, strokes: list[tracing.Placed], inks: Inks) -> int:
     """Draws one in-between. Returns its checksum."""
-    rows, count = _rows(ob, frame, strokes, mapper), len(strokes)
+    rows, count = _rows(ob, frame, strokes, mapper, inks), len(strokes)
     rows.values[gp.MADE], rows.values[gp.TWEENED] = np.zeros(count, bool), np.ones(count, bool)
     rows.values[gp.LINE] = np.zeros(int(rows.sizes.sum()), np.int32)
     opacities = np.array([stroke.opacity for stroke in strokes], np.float32)

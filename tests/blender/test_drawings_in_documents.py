@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from line_stage import film, pictures, traced  # noqa: F401 - fixtures
 from line_stage import attribute, handle_of, kinds, said
-from test_files import close
+from test_files import close, sorted_keys
 
 KEY, MADE = "KEYFRAME", "GENERATED"
 
@@ -166,6 +166,35 @@ def test_a_changed_in_between_of_a_document_is_kept(addon, film, tmp_path):
     assert kinds(addon, ob, "Lines")[3] == "BREAKDOWN"
     after = ls.strokes(addon, ob, "Lines", 3)
     assert all(np.array_equal(after[number], before[number]) for number in before)
+
+
+def test_colours_of_in_betweens_need_no_materials_of_their_own(addon, film, pictures, tmp_path):
+    drawings = [{"frame": frame, "strokes": [line(4, colour=[red, 0, 0])]} for frame, red in ((1, 0.0), (4, 0.9))]
+    between = [{"frame": frame, "strokes": [line(4, track=0, colour=[red, 0, 0], opacity=1)]} for frame, red in ((2, 0.3), (3, 0.6))]
+    matches = [{"frame": 1, "next": 4, "tracks": [[0], [0]]}]
+    ob = taken(tmp_path / "red.json", pictures, drawings=drawings, in_betweens=between, matches=matches)
+    close(sorted_keys(between), sorted_keys(exported(tmp_path / "out.json")["in_betweens"]))
+    assert len({int(attribute(addon, ob, "Lines", frame, "material_index")[0]) for frame in range(1, 5)}) == 2
+
+
+def test_in_betweens_have_no_pegs(addon, film, pictures, tmp_path):
+    pegs = [{"name": "arm", "parent": None, "pivot": [10, 10], "keys": []}]
+    drawings = [{"frame": frame, "strokes": [line(4, frame - 1, peg="arm", material=2)]} for frame in (1, 5)]
+    taken(tmp_path / "pegs.json", pictures, drawings=drawings, pegs=pegs)
+    bpy.ops.rototoon.in_between()
+    found = exported(tmp_path / "out.json")
+    assert {(stroke.get("peg"), stroke["material"]) for each in found["in_betweens"] for stroke in each["strokes"]} == {(None, 2)}
+    assert found["drawings"][0]["strokes"][0]["peg"] == "arm"
+
+
+def test_a_saved_file_has_the_same_kinds_of_drawings(addon, traced, tmp_path):
+    moved(addon, traced, 3)
+    exported(tmp_path / "own.json")
+    ob = imported(tmp_path / "own.json")
+    before = kinds(addon, ob, "Lines")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "own.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "own.blend"))
+    assert kinds(addon, bpy.context.object, "Lines") == before
 
 
 def test_in_betweens_between_no_drawings_are_told(addon, film, pictures, tmp_path):
