@@ -97,13 +97,32 @@ class _Layer:
         keys = {**self._drawn.keys, **dict.fromkeys(self._drawn.blank, dr.EMPTY)}
         contents = {**keys, **self._drawn.made, **self._drawn.other}
         mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
-        fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
+        self._keys = sorted(keys)
+        self._fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
+        self._pieces: dict[tuple[int | None, int], int] = {}
         self._sheets: dict[int, _Sheet] = {}
         for frame, content in sorted(contents.items()):
             strokes = stroke_fields.written(ob, content, mapper.at(0, frame), palette)
-            self._sheets[frame] = _Sheet(content, strokes, _numbers(content, strokes, fresh))
-        self._keys = sorted(keys)
+            self._sheets[frame] = _Sheet(content, strokes, self._numbers(frame, content, strokes))
         self._further = Further(ob)
+
+    def _numbers(self, frame: int, content: st.Content, strokes) -> dict[int, int]:
+        """The number of each stroke. A copied stroke has its original's number; the second one counts as a new stroke."""
+        tracks, taken, found = content.strokes(gp.TRACK).tolist(), {0}, {}
+        for i in strokes:
+            number = tracks[i] if tracks[i] not in taken else self._new(frame, i)
+            taken.add(number)
+            found[i] = number
+        return found
+
+    def _new(self, frame: int, index: int) -> int:
+        """A new number. All in-betweens of two keys have the same strokes: a piece of a stroke has one number on all of them."""
+        if frame not in self._drawn.other:
+            return next(self._fresh)
+        piece = max((key for key in self._keys if key < frame), default=None), index
+        if piece not in self._pieces:
+            self._pieces[piece] = next(self._fresh)
+        return self._pieces[piece]
 
     def written(self) -> Written:
         fields = {
@@ -193,16 +212,6 @@ class _Layer:
                 tracks = [one.tracks, other.tracks]
                 found.append({"frame": frame - self._offset, "next": after - self._offset, "tracks": tracks})
         return found
-
-
-def _numbers(content: st.Content, strokes, fresh) -> dict[int, int]:
-    """The number of each stroke. A copied stroke has its original's number; the second one counts as a new stroke."""
-    tracks, taken, found = content.strokes(gp.TRACK), {0}, {}
-    for i in strokes:
-        number = int(tracks[i]) if int(tracks[i]) not in taken else next(fresh)
-        taken.add(number)
-        found[i] = number
-    return found
 
 
 def _opacities(content: st.Content) -> np.ndarray:

@@ -177,6 +177,14 @@ def test_colours_of_in_betweens_need_no_materials_of_their_own(addon, film, pict
     assert len({int(attribute(addon, ob, "Lines", frame, "material_index")[0]) for frame in range(1, 5)}) == 2
 
 
+def test_pieces_have_one_number_on_all_in_betweens(addon, film, pictures, tmp_path):
+    drawings = [{"frame": frame, "strokes": [line(4)]} for frame in (1, 4)]
+    between = [{"frame": frame, "strokes": [line(4, track=0), line(3, track=0)]} for frame in (2, 3)]
+    taken(tmp_path / "pieces.json", pictures, drawings=drawings, in_betweens=between)
+    found = exported(tmp_path / "out.json")["in_betweens"]
+    assert [[stroke["track"] for stroke in each["strokes"]] for each in found] == [[0, found[0]["strokes"][1]["track"]]] * 2
+
+
 def test_in_betweens_have_no_pegs(addon, film, pictures, tmp_path):
     pegs = [{"name": "arm", "parent": None, "pivot": [10, 10], "keys": []}]
     drawings = [{"frame": frame, "strokes": [line(4, frame - 1, peg="arm", material=2)]} for frame in (1, 5)]
