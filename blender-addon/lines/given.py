@@ -83,15 +83,20 @@ def draw(ob, name: str, film: Film) -> Done:
 
 
 def _cleared(ob, name: str, target) -> set[int]:
-    """Removes all generated drawings of a layer, and returns the frames of the artist's."""
+    """Removes all generated drawings of a layer, and returns the frames of the others.
+
+    In-betweens without a checksum, as on a renamed layer, stay: the artist may have changed them.
+    """
     kept = tween_records.read(ob.data)
-    tweening.adopt(target, ks.frames_of(target, kept.get(name, tween_records.Layer())).edited)
+    record = kept.get(name, tween_records.Layer())
+    tweening.adopt(target, ks.frames_of(target, record).edited)
     (layer,) = dr.read(ob, [name])
     dr.keep(ob, layer)
-    gp.remove_frames(target, sorted(layer.made.keys() | layer.other.keys()))
+    between = {frame for span in record.spans.values() for frame in span.sums if frame in layer.other}
+    gp.remove_frames(target, sorted(layer.made.keys() | between))
     if kept.pop(name, None) is not None:
         tween_records.write(ob.data, kept)
-    return set(layer.kept - layer.other.keys())
+    return set(layer.kept - between)
 
 
 def _known(ob, drawn: Strokes) -> dict[tuple[int, bool], int]:

@@ -205,6 +205,23 @@ def test_a_saved_file_has_the_same_kinds_of_drawings(addon, traced, tmp_path):
     assert kinds(addon, bpy.context.object, "Lines") == before
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_in_betweens_that_may_have_been_changed_are_not_replaced(addon, film, pictures, tmp_path, known):
+    ob = tweened(addon)
+    moved(addon, ob, 3)
+    if not known:
+        # As on a layer that was renamed.
+        del ob.data["rototoon_tween"]
+    before = ls.strokes(addon, ob, "Lines", 3)
+    path = tmp_path / "new.json"
+    path.write_text(json.dumps(document(pictures, drawings=[{"frame": 3, "strokes": [line(4)]}])))
+    imported(path, into="ACTIVE", keep_numbers=True)
+    assert said(addon).warnings == ("drawings of yours stay as they were, on 3",)
+    after = ls.strokes(addon, ob, "Lines", 3)
+    assert all(np.array_equal(after[number], before[number]) for number in before)
+    assert sorted(kinds(addon, ob, "Lines")) == ([1, 3, 6] if known else [1, 2, 3, 4, 5, 6])
+
+
 def test_in_betweens_between_no_drawings_are_told(addon, film, pictures, tmp_path):
     between = [{"frame": frame, "strokes": [line(0, track=0)]} for frame in (2, 5)]
     ob = taken(tmp_path / "some.json", pictures, drawings=[{"frame": f, "strokes": [line(0)]} for f in (1, 4)], in_betweens=between)
