@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import bpy
 import layouts
 import numpy as np
+import press_scenes
 import pytest
 import shots
 from conftest import ROOT
@@ -85,6 +86,16 @@ def test_steps_tick_themselves(addon, fake, tmp_path):
     assert done == list(zip([1, 2, 2, 4, 4, 5, 6], [name and f"rototoon.{name}" for name in names]))
     said = layouts.labels(layouts.draw(bpy.types.ROTOTOON_PT_start))
     assert "All steps are done" in said
+
+
+@pytest.mark.parametrize("name", [name for name, work in press_scenes.STEPS.items() if work])
+def test_the_scenes_of_the_press_come_to_their_step(addon, library, tmp_path, name):
+    ob, start = shots.set_up(tmp_path), addon("ui.start")
+    for work in press_scenes.STEPS[name]:
+        work(addon, ob)
+    addon("capture.stand").read(ob)
+    step = start.next_of(start.steps_of(ob))
+    assert step.operator == f"rototoon.{name}", step.hint
 
 
 def test_panels_say_what_waits(addon, fake, tmp_path):
