@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn the_report_names_frames_and_clicks() {
         let frames = vec![FilledFrame { frame: 2, regions: 3, doubtful: 1, related: true }];
-        let report = FillReport { frames, missed: vec![MissedClick { frame: 2, entry: 1, click: 4 }] };
+        let report = FillReport { frames, missed: vec![MissedClick { frame: 2, at: Point::ONE, entry: 1, click: 4 }] };
         let told: Value = serde_json::from_str(&report_to_json(&report)).unwrap();
         let frame = json!({"frame": 2, "regions": 3, "doubtful": 1, "related": true});
         assert_eq!(told, json!({"frames": [frame], "missed": [{"frame": 2, "click": 4}]}));
