@@ -14,6 +14,7 @@
 
 use super::samples::{Cells, of_line};
 use rototoon_base::geometry::{Point, polyline};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What tells how well a stroke was carried. All are 0 at best.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -65,20 +66,37 @@ pub fn longer(before: (&[Point], bool), after: (&[Point], bool)) -> f64 {
     (length(after) / length(before)).ln().abs()
 }
 
-/// For each line the share of it within `reach` of another line.
-pub fn shared(lines: &[(Vec<Point>, bool)], reach: f64) -> Vec<f64> {
-    let dense = |(points, closed): &(Vec<Point>, bool)| -> Vec<Point> {
+/// For each line the share of it within `reach` of any other line.
+pub fn shared(lines: &[(&[Point], bool)], reach: f64) -> Vec<f64> {
+    let near = others(lines, reach);
+    near.iter()
+        .map(|own| own.iter().filter(|others| !others.is_empty()).count() as f64 / own.len().max(1) as f64)
+        .collect()
+}
+
+/// For each line the shares of it within `reach` of each other line that is near.
+pub fn near(lines: &[(&[Point], bool)], reach: f64) -> Vec<BTreeMap<usize, f64>> {
+    let of = |own: Vec<BTreeSet<usize>>| {
+        let (all, mut counts) = (own.len() as f64, BTreeMap::new());
+        own.into_iter().flatten().for_each(|other| *counts.entry(other).or_insert(0usize) += 1);
+        counts.into_iter().map(|(other, count)| (other, count as f64 / all)).collect()
+    };
+    others(lines, reach).into_iter().map(of).collect()
+}
+
+/// For each place of each line the other lines within `reach`.
+fn others(lines: &[(&[Point], bool)], reach: f64) -> Vec<Vec<BTreeSet<usize>>> {
+    let dense = |(points, closed): &(&[Point], bool)| -> Vec<Point> {
         of_line(points, *closed, reach).into_iter().map(|sample| sample.place).collect()
     };
     let own: Vec<Vec<Point>> = lines.iter().map(dense).collect();
     let (of, all): (Vec<usize>, Vec<Point>) =
         own.iter().enumerate().flat_map(|(k, points)| points.iter().map(move |&p| (k, p))).unzip();
     let cells = Cells::new(all.iter().copied(), reach);
-    let is_shared = |k: usize, p: Point| cells.near(p, reach).any(|i| of[i] != k && all[i].distance(p) <= reach);
-    let share = |(k, points): (usize, &Vec<Point>)| {
-        points.iter().filter(|&&p| is_shared(k, p)).count() as f64 / points.len().max(1) as f64
+    let beside = |k: usize, p: Point| {
+        cells.near(p, reach).filter(|&i| of[i] != k && all[i].distance(p) <= reach).map(|i| of[i]).collect()
     };
-    own.iter().enumerate().map(share).collect()
+    own.iter().enumerate().map(|(k, points)| points.iter().map(|&p| beside(k, p)).collect()).collect()
 }
 
 #[cfg(test)]
@@ -111,7 +129,10 @@ mod tests {
     #[test]
     fn lines_on_each_other_are_shared_and_others_are_not() {
         let line = |y: f64| (vec![Point::new(0.0, y), Point::new(40.0, y)], false);
-        let found = shared(&[line(0.0), line(1.0), line(30.0)], 2.0);
+        let three = [0.0, 1.0, 30.0].map(line);
+        let lines = [0, 1, 2].map(|k: usize| (&three[k].0[..], false));
+        let found = shared(&lines, 2.0);
+        assert_eq!(near(&lines, 2.0), [BTreeMap::from([(1, 1.0)]), BTreeMap::from([(0, 1.0)]), BTreeMap::new()]);
         assert_eq!(found, [1.0, 1.0, 0.0]);
         let [a, b] = [line(0.0), (vec![Point::ZERO, Point::new(20.0, 0.0)], false)];
         assert!((longer((&a.0, a.1), (&b.0, b.1)) - 2f64.ln()).abs() < 1e-9);

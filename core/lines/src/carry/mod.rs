@@ -2,20 +2,26 @@
 //!
 //! 1. [`register`] finds roughly where every point of every stroke is, or that the drawings have nothing to do with each
 //!    other. Then all strokes end, and those of the next drawing are new.
-//! 2. [`follow`] lays each stroke onto the ink there. A stroke that is mostly off the ink has ended.
-//! 3. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
+//! 2. [`follow`] lays each stroke onto the ink there. A stroke that is mostly off the ink has ended. Solid shapes are laid onto the
+//!    outlines of solid shapes, or [looked for](blot) where there are none.
+//! 3. [`rivals`]: of strokes that lie on the same ink one stays.
+//! 4. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
+//!
+//! Where the same picture is shown again, its strokes stay as they are.
 //!
 //! Between two drawn keys strokes come from both: [`between()`].
 
 mod belief;
 mod between;
 mod bind;
+mod blot;
 mod confidence;
 mod context;
 mod follow;
 mod identify;
 mod register;
 mod rest;
+mod rivals;
 mod samples;
 
 pub use between::{Key, between};
@@ -31,6 +37,7 @@ use follow::Followed;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polyline};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Share of a stroke that must be on ink, or it has ended.
 const ON_INK: f64 = 0.4;
@@ -40,6 +47,8 @@ const AWAY: usize = 10;
 const EXPLAINS: f64 = 0.75;
 /// Length of the shortest new stroke, at 540 lines, added to the width.
 const NEW: f64 = 3.0;
+/// Share of a solid shape's outline that must be on the outline of one.
+const ON_SOLID: f64 = 0.8;
 
 /// The strokes of the drawing `from` on the drawing `to`. New strokes get numbers from `next` on, which is raised. If the
 /// drawings have nothing to do with each other, all strokes are new.
@@ -65,33 +74,39 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
     }
     let unit = to.unit;
     let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
+    let reach = EXPLAINS * unit + 0.5 * to.width;
+    if Arc::ptr_eq(&from.picture, &to.picture) || from.picture == to.picture {
+        let rests = rest::left(&to.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, NEW * unit);
+        return (strokes, rests);
+    }
     let registered = register::register(from, &strokes, to);
     if !registered.related {
         strokes.clear();
     }
-    let ink = follow::Ink::new(samples::of_ink(to, 0.5 * follow::STEP * unit, false), unit);
-    let laid: Vec<Option<Laid>> = strokes
+    let step = 0.5 * follow::STEP * unit;
+    let ink = follow::Ink::new(samples::of_ink(to, step, false), unit);
+    let solids = follow::Ink::new(samples::of_solids(to, step), unit);
+    let mut laid: Vec<Option<Laid>> = strokes
         .par_iter()
         .enumerate()
-        .map(|(k, tracked)| {
-            let expected = moved(&tracked.stroke, &registered.lengths[k], &registered.shifts[k]);
-            kept(ink.follow(&expected, tracked.stroke.closed), tracked.stroke.closed, registered.signs[k])
+        .map(|(k, Tracked { stroke, .. })| {
+            let expected = moved(stroke, &registered.lengths[k], &registered.shifts[k]);
+            if stroke.fill && stroke.closed {
+                return solid(from, &stroke.points, &expected, (to, &solids), registered.signs[k]);
+            }
+            kept(ink.follow(&expected, stroke.closed), stroke.closed, registered.signs[k])
         })
         .collect();
+    rivals::settled(&mut laid, &strokes, reach, unit);
     let (mut numbers, mut lines) = (Vec::new(), Vec::new());
     for (k, laid) in laid.into_iter().enumerate().filter_map(|(k, laid)| Some((k, laid?))) {
         numbers.push((k, laid.signs));
         lines.push((laid.points, laid.closed));
     }
-    let reach = EXPLAINS * unit + 0.5 * to.width;
-    let covered: Vec<Point> = lines
-        .iter()
-        .flat_map(|(points, closed)| samples::of_line(points, *closed, 0.5 * reach))
-        .map(|s| s.place)
-        .collect();
-    let rests = rest::left(&to.lines(), &covered, reach, NEW * unit);
+    let rests = rest::left(&to.lines(), &covered(lines.iter().map(of_line), reach), reach, NEW * unit);
     let rests = rest::lengthened(&mut lines, rests, reach);
-    for ((own, shared), line) in numbers.iter_mut().zip(confidence::shared(&lines, reach)).zip(&lines) {
+    let shared = confidence::shared(&lines.iter().map(of_line).collect::<Vec<_>>(), reach);
+    for ((own, shared), line) in numbers.iter_mut().zip(shared).zip(&lines) {
         let before = &strokes[own.0].stroke;
         own.1 =
             Signs { shared, longer: confidence::longer((&before.points, before.closed), (&line.0, line.1)), ..own.1 };
@@ -101,6 +116,40 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
         ..finished(&strokes[k], points, *closed, to)
     };
     (numbers.par_iter().zip(&lines).map(known).collect(), rests)
+}
+
+fn of_stroke(tracked: &Tracked) -> (&[Point], bool) {
+    (&tracked.stroke.points, tracked.stroke.closed)
+}
+
+fn of_line((points, closed): &(Vec<Point>, bool)) -> (&[Point], bool) {
+    (points, *closed)
+}
+
+/// Places along lines, which explain the ink within `reach`.
+fn covered<'a>(lines: impl Iterator<Item = (&'a [Point], bool)>, reach: f64) -> Vec<Point> {
+    lines.flat_map(|(points, closed)| samples::of_line(points, closed, 0.5 * reach)).map(|s| s.place).collect()
+}
+
+/// A solid shape on the outline of one there, or where it is [found](blot) without.
+fn solid(
+    from: &Drawing,
+    outline: &[Point],
+    expected: &[Point],
+    (to, solids): (&Drawing, &follow::Ink),
+    signs: Signs,
+) -> Option<Laid> {
+    let followed = solids.follow(expected, true);
+    if followed.on.iter().filter(|on| **on).count() as f64 >= ON_SOLID * followed.on.len() as f64 {
+        return kept(followed, true, signs);
+    }
+    // What registration says of it is what it says of lines.
+    blot::found(from, outline, expected, to)
+}
+
+/// The mean way of points from their places to the expected ones.
+fn carried_along(points: &[Point], expected: &[Point]) -> Point {
+    points.iter().zip(expected).map(|(p, q)| *q - *p).sum::<Point>() / points.len().max(1) as f64
 }
 
 /// A stroke at its expected place: shifts between its registered points are interpolated.

@@ -35,6 +35,12 @@ pub fn of_short_line(points: &[Point], closed: bool, step: f64) -> Vec<Sample> {
     }
 }
 
+/// Samples of the outlines of a drawing's solid shapes.
+pub fn of_solids(drawing: &Drawing, step: f64) -> Vec<Sample> {
+    let solids = drawing.graph.branches.iter().filter(|branch| branch.fill);
+    solids.flat_map(|branch| of_line(&branch.points, branch.closed, step)).collect()
+}
+
 /// Samples of all ink of a drawing, through its junctions. With `few`, branches shorter than `step` have a single one.
 pub fn of_ink(drawing: &Drawing, step: f64, few: bool) -> Vec<Sample> {
     let graph = &drawing.graph;
