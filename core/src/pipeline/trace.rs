@@ -1,6 +1,7 @@
 //! Strokes of line drawings: traced on one frame, and the same strokes on the others.
 
 mod kept;
+mod known;
 mod on_keys;
 #[cfg(test)]
 mod tests;
@@ -17,6 +18,7 @@ use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use blake3::Hash;
 use kept::{Numbers, Span, of_picture};
+use known::{Known, beside, renamed};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -28,11 +30,14 @@ use std::sync::Arc;
 /// rayon pool; the result does not depend on the pool.
 ///
 /// Work begins on the document's first drawing within `range` (the complete footage where it is `None`), whose strokes get
-/// the numbers 0, 1, … (or the next free ones, where frames outside of `range` have traced strokes). Without drawings it begins on the first frame,
+/// the numbers 0, 1, …. Without drawings it begins on the first frame,
 /// which is traced. From there strokes are carried from frame to frame, forwards and backwards. Frames with a drawing keep
 /// that drawing's strokes; each gets the number of the carried stroke that it lies on, or a new one. Frames between two
-/// drawings are [bound to both](between()). Traced strokes of frames outside of `range` stay; their numbers are not used
-/// again.
+/// drawings are [bound to both](between()).
+///
+/// Frames outside of `range` stay as they are. The nearest of them before and behind that have a drawing or traced strokes count as
+/// drawings: the strokes within have their numbers, as if all frames were traced at once. New strokes have numbers that no frame
+/// outside has.
 ///
 /// With a `memory`, spans between drawings that are the same as in an earlier run are taken from it. The result is the same.
 ///
@@ -54,10 +59,10 @@ pub fn trace(
     let drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
     let earlier = document.traced().map_err(|error| wrong(&error))?;
     let sequence = frames(document, folder)?;
+    let beside = beside(&drawn, &earlier, &range);
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
-    // Frames between two drawings are looked at twice.
-    let twice: usize = drawn.windows(2).map(|pair| (pair[0].frame + 1..pair[1].frame).count()).sum();
+    let all = looks(&drawn, &beside, &range);
     let mut tracing = Tracing {
         frames: &sequence,
         drawn,
@@ -65,11 +70,12 @@ pub fn trace(
         memory,
         hashes: BTreeMap::new(),
         progress,
-        all: range.clone().count() + twice,
+        all,
         done: 0,
         next: used.unwrap_or(0),
+        unit: footage.height as f64 / 540.0,
     };
-    let mut found = tracing.all(&range)?;
+    let mut found = tracing.all(&range, &beside)?;
     found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
     found.sort_by_key(|drawing| drawing.frame);
     document.set_traced(&found);
@@ -89,6 +95,8 @@ struct Tracing<'a> {
     done: usize,
     /// The next new number.
     next: usize,
+    /// Size of a pixel of 540 lines.
+    unit: f64,
 }
 
 /// A drawing from which strokes are carried. Its ink is looked at where it is needed.
@@ -109,24 +117,57 @@ impl Place {
 type Found = Vec<(FrameNumber, Vec<Tracked>)>;
 
 impl Tracing<'_> {
-    fn all(&mut self, range: &RangeInclusive<FrameNumber>) -> Result<Vec<TracedDrawing>, PipelineError> {
-        let drawn = std::mem::take(&mut self.drawn);
-        let start = drawn.first().map_or(*range.start(), |drawing| drawing.frame);
+    fn all(
+        &mut self,
+        range: &RangeInclusive<FrameNumber>,
+        [before, behind]: &[Option<Known>; 2],
+    ) -> Result<Vec<TracedDrawing>, PipelineError> {
+        let new = self.next;
+        let mut drawn = std::mem::take(&mut self.drawn).into_iter();
         let mut found = Found::new();
-        let mut place = self.begun(start, drawn.first().copied())?;
-        found.push((start, place.drawn.clone()));
-        self.outward(&mut place, (*range.start()..start).rev().collect(), &mut found)?;
-        for drawing in drawn.iter().skip(1) {
-            place = self.between(place, drawing, &mut found)?;
+        let mut place = match (before, drawn.as_slice(), behind) {
+            (Some(known), ..) | (None, [], Some(known)) => self.known(known),
+            (None, ..) => self.begun(*range.start(), drawn.next())?,
+        };
+        found.push((place.frame, place.drawn.clone()));
+        let back = (*range.start()..place.frame).rev().collect();
+        self.outward(&mut place, back, &mut found)?;
+        for drawing in drawn {
+            place = self.between(place, drawing.frame, of_drawing(drawing), &mut found)?;
         }
-        let rest = place.frame + 1..=*range.end();
-        self.outward(&mut place, rest.collect(), &mut found)?;
+        match behind {
+            Some(known) if place.frame < known.frame => self.up_to(place, known, new, &mut found)?,
+            _ => {
+                let rest = (place.frame + 1..=*range.end()).collect();
+                self.outward(&mut place, rest, &mut found)?;
+            }
+        }
         self.progress.report("Tracing", 1.0)?;
-        Ok(found.into_iter().map(|(frame, strokes)| written(frame, &strokes)).collect())
+        let within = found.into_iter().filter(|(frame, _)| range.contains(frame));
+        Ok(within.map(|(frame, strokes)| written(frame, &strokes)).collect())
     }
 
-    /// The place at which work begins: a drawing, or the traced picture of the frame.
-    fn begun(&mut self, frame: FrameNumber, drawing: Option<&Drawn>) -> Result<Place, PipelineError> {
+    /// The place of a drawing outside of the range.
+    fn known(&mut self, known: &Known) -> Place {
+        let drawn = known.tracked(self.unit, &mut self.next);
+        Place { frame: known.frame, ink: None, drawn, beside: Vec::new() }
+    }
+
+    /// Carries the strokes of a place up to a drawing behind the range, whose numbers those take that are not below `new`.
+    fn up_to(&mut self, place: Place, known: &Known, new: usize, found: &mut Found) -> Result<(), PipelineError> {
+        let own = known.tracked(self.unit, &mut self.next.clone());
+        let there = self.between(place, known.frame, known.strokes(), found)?;
+        let used = found.iter().flat_map(|(_, strokes)| strokes).map(|stroke| stroke.track).collect();
+        let names = renamed(&there.drawn, &own, new, &used);
+        for stroke in found.iter_mut().flat_map(|(_, strokes)| strokes) {
+            stroke.track = names.get(&stroke.track).copied().unwrap_or(stroke.track);
+        }
+        Ok(())
+    }
+
+    /// The place at which work begins: a drawing, or the traced picture of the frame `first`.
+    fn begun(&mut self, first: FrameNumber, drawing: Option<&Drawn>) -> Result<Place, PipelineError> {
+        let frame = drawing.map_or(first, |drawing| drawing.frame);
         let numbers = self.next..;
         let sure = |strokes: Vec<Stroke>| -> Vec<Tracked> {
             numbers.zip(strokes).map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
@@ -186,35 +227,41 @@ impl Tracing<'_> {
     }
 
     /// Carries the strokes of a place to the next drawing. Returns the place there.
-    fn between(&mut self, mut place: Place, to: &Drawn, found: &mut Found) -> Result<Place, PipelineError> {
-        let frames: Vec<FrameNumber> = (place.frame + 1..to.frame).collect();
+    fn between(
+        &mut self,
+        mut place: Place,
+        to: FrameNumber,
+        drawn: Vec<Stroke>,
+        found: &mut Found,
+    ) -> Result<Place, PipelineError> {
+        let frames: Vec<FrameNumber> = (place.frame + 1..to).collect();
         let numbers = Numbers::new(place.drawn.iter().chain(&place.beside), self.next);
         let before = [numbers.ranked(&place.drawn), numbers.ranked(&place.beside)];
-        let looked: Vec<FrameNumber> = (place.frame..=to.frame).collect();
-        let key = self.key("between", &[&before[0], &before[1]], &looked, &of_drawing(to))?;
+        let looked: Vec<FrameNumber> = (place.frame..=to).collect();
+        let key = self.key("between", &[&before[0], &before[1]], &looked, &drawn)?;
         if let Some(span) = self.recall(key) {
             self.next += span.new;
             self.done += 2 * frames.len() + 1;
             let mut drawings = span.drawings.iter().map(|strokes| numbers.numbered(strokes));
             found.extend(frames.into_iter().zip(&mut drawings));
             let drawn = drawings.next().unwrap_or_default();
-            found.push((to.frame, drawn.clone()));
-            return Ok(Place { frame: to.frame, ink: None, drawn, beside: numbers.numbered(&span.beside) });
+            found.push((to, drawn.clone()));
+            return Ok(Place { frame: to, ink: None, drawn, beside: numbers.numbered(&span.beside) });
         }
         let drawing = self.ink(&mut place)?;
         let first = Key { drawing, drawn: place.drawn, beside: place.beside };
         let mut next = self.next;
-        let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to.frame));
-        let (drawings, second) = between(&first, frames.len(), &mut look, of_drawing(to), &mut next)?;
+        let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to));
+        let (drawings, second) = between(&first, frames.len(), &mut look, drawn, &mut next)?;
         let new = next - self.next;
         self.next = next;
         let ranked = drawings.iter().chain([&second.drawn]).map(|strokes| numbers.ranked(strokes)).collect();
         let beside = numbers.ranked(&second.beside);
         self.keep(key, || Span { drawings: ranked, beside, new });
         found.extend(frames.into_iter().zip(drawings));
-        found.push((to.frame, second.drawn.clone()));
+        found.push((to, second.drawn.clone()));
         let Key { drawing, drawn, beside } = second;
-        Ok(Place { frame: to.frame, ink: Some(drawing), drawn, beside })
+        Ok(Place { frame: to, ink: Some(drawing), drawn, beside })
     }
 
     /// The key of a span, if spans are kept.
@@ -272,6 +319,16 @@ impl Tracing<'_> {
     fn share(&self) -> f64 {
         (self.done as f64 / self.all.max(1) as f64).min(1.0)
     }
+}
+
+/// How many pictures are looked at. Frames between two drawings are looked at twice.
+fn looks(drawn: &[&Drawn], [before, behind]: &[Option<Known>; 2], range: &RangeInclusive<FrameNumber>) -> usize {
+    let outside = [before, behind].map(|known| known.as_ref().map(|known| known.frame));
+    let inner = drawn.iter().map(|drawing| drawing.frame);
+    let places: Vec<FrameNumber> = outside[0].into_iter().chain(inner).chain(outside[1]).collect();
+    let twice: usize = places.windows(2).map(|pair| (pair[0] + 1..pair[1]).count()).sum();
+    let (from, to) = (outside[0].unwrap_or(*range.start()), outside[1].unwrap_or(*range.end()));
+    (from..=to).count() + twice
 }
 
 /// The strokes of a drawing.

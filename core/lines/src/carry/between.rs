@@ -70,7 +70,7 @@ pub fn between<E>(
     let (drawing, came) = onward(count + 1, &before, forwards.last())?;
     drop(before);
     let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
-    let drawn = identify(&came, drawn, &drawing, next);
+    let drawn = identify(&came, drawn, drawing.unit, next);
     let began = came.into_iter().filter(|s| !known.contains(&s.track)).collect();
     let beside = bind([drawn.clone(), began], &drawing).split_off(drawn.len());
     let mut back =
@@ -135,7 +135,7 @@ impl Backwards<'_> {
         let (numbers, lines): (Vec<usize>, Vec<Stroke>) =
             back.iter().filter(|s| !self.known.contains(&s.track)).map(|s| (s.track, s.stroke.clone())).unzip();
         let none = usize::MAX - lines.len();
-        let found = identify(&lost, lines, drawing, &mut none.clone());
+        let found = identify(&lost, lines, drawing.unit, &mut none.clone());
         numbers.into_iter().zip(found).map(|(own, met)| (own, met.track)).filter(|&(_, met)| met < none).collect()
     }
 }

@@ -5,7 +5,6 @@
 //! is new.
 
 use super::samples::{Cells, of_line};
-use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::sparse_assignment::{Choice, assign_sparse};
@@ -15,9 +14,10 @@ const NEAR: f64 = 6.0;
 /// Least mean of both shares.
 const SHARED: f64 = 0.4;
 
-/// The drawn strokes with the numbers of `carried` ones, or with numbers from `next` on, which is raised.
-pub fn identify(carried: &[Tracked], drawn: Vec<Stroke>, drawing: &Drawing, next: &mut usize) -> Vec<Tracked> {
-    let reach = NEAR * drawing.unit;
+/// The drawn strokes with the numbers of `carried` ones, or with numbers from `next` on, which is raised. `unit` is the size of a pixel
+/// of 540 lines.
+pub fn identify(carried: &[Tracked], drawn: Vec<Stroke>, unit: f64, next: &mut usize) -> Vec<Tracked> {
+    let reach = NEAR * unit;
     let dense = |stroke: &Stroke| -> Vec<Point> {
         of_line(&stroke.points, stroke.closed, 0.5 * reach).into_iter().map(|sample| sample.place).collect()
     };

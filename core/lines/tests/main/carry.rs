@@ -120,7 +120,7 @@ fn drawn_strokes_get_the_numbers_of_what_they_lie_on() {
     let mut own: Vec<Stroke> = carried.iter().rev().map(|s| s.stroke.clone()).collect();
     own.push(Stroke { points: vec![Point::new(5.0, 5.0), Point::new(40.0, 9.0)], ..Stroke::default() });
     let mut next = 300;
-    let found: Vec<usize> = identify(&carried, own, &drawing(&lines), &mut next).iter().map(|s| s.track).collect();
+    let found: Vec<usize> = identify(&carried, own, 420.0 / 540.0, &mut next).iter().map(|s| s.track).collect();
     let expected: Vec<usize> = (100..112).rev().chain([300]).collect();
     assert_eq!((found, next), (expected, 301));
 }

@@ -1,12 +1,13 @@
 //! After an edit, tracing with a memory gives what tracing anew gives, and works only where the edit matters.
 
-use super::{Drawn, TraceMemory, Tracing};
+use super::{Drawn, TraceMemory, Tracing, beside};
 use crate::geometry::Point;
 use crate::lines::Options;
 use crate::project::drawings::DrawnStroke;
 use crate::project::traced::TracedDrawing;
 use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster, Silent};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 const LAST: FrameNumber = 9;
@@ -45,18 +46,30 @@ fn drawn(frame: FrameNumber, raised: f64) -> Drawn {
 }
 
 fn traced(drawings: &[Drawn], memory: Option<&mut TraceMemory>) -> Vec<TracedDrawing> {
+    within(0..=LAST, drawings, &[], memory)
+}
+
+/// Traces the frames of a range, beside what an earlier run traced outside of it.
+fn within(
+    range: RangeInclusive<FrameNumber>,
+    drawings: &[Drawn],
+    earlier: &[TracedDrawing],
+    memory: Option<&mut TraceMemory>,
+) -> Vec<TracedDrawing> {
+    let used = earlier.iter().flat_map(|drawing| &drawing.strokes).map(|stroke| stroke.track + 1).max();
     let mut tracing = Tracing {
         frames: &Film,
-        drawn: drawings.iter().collect(),
+        drawn: drawings.iter().filter(|drawing| range.contains(&drawing.frame)).collect(),
         options: &Options::default(),
         memory,
         hashes: BTreeMap::new(),
         progress: &Silent,
         all: 1,
         done: 0,
-        next: 0,
+        next: used.unwrap_or(0),
+        unit: 90.0 / 540.0,
     };
-    let mut found = tracing.all(&(0..=LAST)).unwrap();
+    let mut found = tracing.all(&range, &beside(drawings, earlier, &range)).unwrap();
     found.sort_by_key(|drawing| drawing.frame);
     found
 }
@@ -71,6 +84,72 @@ fn a_second_run_takes_every_span_from_memory() {
         assert_eq!(traced(&drawings, Some(&mut memory)), anew);
         assert_eq!(memory.spans(), spans, "nothing is traced again");
         assert!(anew.iter().any(|drawing| drawing.strokes.len() == 3), "a stroke begins on the way");
+    }
+}
+
+#[test]
+fn stages_give_what_one_run_gives() {
+    let whole = traced(&[], None);
+    assert!(whole[2].strokes.len() == 3, "a stroke begins in the first stage");
+    for end in [1, 4] {
+        let first = within(0..=end, &[], &[], None);
+        let mut memory = TraceMemory::default();
+        let second = within(end + 1..=LAST, &[], &first, None);
+        assert_eq!([first.clone(), second.clone()].concat(), whole, "cut behind frame {end}");
+        assert_eq!(within(end + 1..=LAST, &[], &first, Some(&mut memory)), second);
+        assert_eq!(within(end + 1..=LAST, &[], &first, Some(&mut memory)), second, "from memory");
+    }
+}
+
+#[test]
+fn frames_that_are_traced_once_more_keep_the_numbers() {
+    for drawings in [vec![], vec![drawn(1, 0.0), drawn(7, 0.0)], vec![drawn(5, 0.0)]] {
+        let whole = traced(&drawings, None);
+        // Behind the last drawing the third bar begins anew.
+        let last = drawings.last().map_or(LAST, |drawing| drawing.frame);
+        for range in [0..=2, 0..=5, 3..=3, 4..=6, 8..=LAST].into_iter().filter(|range| *range.start() <= last) {
+            let outside: Vec<TracedDrawing> =
+                whole.iter().filter(|drawing| !range.contains(&drawing.frame)).cloned().collect();
+            let known: BTreeSet<usize> = tracks(&outside).into_iter().flatten().collect();
+            // A stroke that no frame outside has may have another number.
+            let of = |drawings: &[TracedDrawing]| -> Vec<(usize, Vec<usize>)> {
+                let kept =
+                    |all: Vec<usize>| (all.len(), all.into_iter().filter(|track| known.contains(track)).collect());
+                tracks(drawings).into_iter().map(kept).collect()
+            };
+            let again = within(range.clone(), &drawings, &outside, None);
+            let before = &whole[*range.start() as usize..=*range.end() as usize];
+            assert_eq!(of(&again), of(before), "{} drawings, frames {range:?}", drawings.len());
+        }
+    }
+}
+
+/// The numbers on each frame.
+fn tracks(drawings: &[TracedDrawing]) -> Vec<Vec<usize>> {
+    let of = |drawing: &TracedDrawing| {
+        let mut tracks: Vec<usize> = drawing.strokes.iter().map(|stroke| stroke.track).collect();
+        tracks.sort_unstable();
+        tracks
+    };
+    drawings.iter().map(of).collect()
+}
+
+#[test]
+fn drawings_outside_count() {
+    let drawings = [drawn(1, 0.0), drawn(7, 0.0)];
+    let whole = traced(&drawings, None);
+    for range in [2..=4, 3..=6] {
+        let part = &whole[*range.start() as usize..=*range.end() as usize];
+        assert_eq!(within(range.clone(), &drawings, &[], None), part, "frames {range:?}, between drawings");
+    }
+    assert_eq!(within(0..=0, &drawings, &[], None), whole[..1], "before all drawings");
+    // What the artist draws after a run has its numbers, too.
+    let later = [drawn(1, 0.0), drawn(4, 0.0), drawn(7, 0.0)];
+    let outside: Vec<TracedDrawing> = whole.iter().filter(|drawing| drawing.frame < 5).cloned().collect();
+    let behind = within(5..=LAST, &later, &outside, None);
+    for (again, before) in behind.iter().zip(&whole[5..]) {
+        let known = |drawing: &TracedDrawing| drawing.strokes.iter().filter(|stroke| stroke.track < 2).count();
+        assert_eq!((known(again), known(before)), (2, 2), "frame {}", again.frame);
     }
 }
 
