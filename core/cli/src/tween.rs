@@ -77,18 +77,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let arcs = given.get_one::<f64>("arcs").copied().unwrap_or(Options::default().arcs);
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
-    let (document, held, suggested) = progress::run(arguments::threads(given), |bar| {
+    let (document, notes, suggested) = progress::run(arguments::threads(given), |bar| {
         let done = pipeline::tween(&mut document, &options, follow, bar).map_err(|error| Failure::of(error, from))?;
-        let held = done.holding();
+        let notes = [done.holding(), done.exchanging()];
         if !given.get_flag("suggest") {
-            return Ok((document, held, None));
+            return Ok((document, notes, None));
         }
         let pictures = pipeline::frames(&document, project::folder(from))?;
         let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), bar)?;
         let nothing = || "no breakdown: nothing lies between the keys".to_owned();
-        Ok((document, held, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))
+        Ok((document, notes, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))
     })?;
     project::save(document, from, to)?;
-    held.iter().chain(&suggested).for_each(|text| line("note", text));
+    notes.iter().flatten().chain(&suggested).for_each(|text| line("note", text));
     Ok(())
 }

@@ -27,6 +27,9 @@ pub struct Tweened {
     /// The frames of both drawings of each span whose earlier drawing is held, because no movement between the two can be
     /// believed.
     pub held: Vec<[FrameNumber; 2]>,
+    /// The frames of both drawings of each span in which strokes are exchanged half way, because their counterparts are not sure, with the
+    /// number of these strokes.
+    pub exchanged: Vec<([FrameNumber; 2], usize)>,
 }
 
 impl Tweened {
@@ -36,6 +39,17 @@ impl Tweened {
         let why = "no movement between the two drawings can be believed, so the earlier one is held";
         let advice = "pair their strokes by hand, or draw a breakdown";
         (!spans.is_empty()).then(|| format!("frames {}: {why}; {advice}", spans.join(", ")))
+    }
+
+    /// What a person is told of strokes that are exchanged. `None` if there are none.
+    pub fn exchanging(&self) -> Option<String> {
+        let span = |([first, last], count): &([FrameNumber; 2], usize)| {
+            format!("{first} to {last} ({count} {})", if *count == 1 { "stroke" } else { "strokes" })
+        };
+        let spans: Vec<String> = self.exchanged.iter().map(span).collect();
+        let why = "strokes of one drawing give way to those of the other half way, because it is not sure which belong together";
+        (!spans.is_empty())
+            .then(|| format!("frames {}: {why}; pair them by hand, or draw a breakdown", spans.join(", ")))
     }
 }
 
@@ -97,7 +111,10 @@ pub fn tween(
     document.set_in_betweens(matches, &drawn);
     // Where no frame lies between, nothing is held.
     let held = spans().filter(|([first, last], held)| *held && first + 1 < *last).map(|(span, _)| span).collect();
-    Ok(Tweened { shown: shown(&sequence, &on_keys, drawn), held })
+    let exchanged =
+        spans().enumerate().map(|(k, (span, held))| (span, if held { 0 } else { sequence.exchanged_strokes(k) }));
+    let exchanged = exchanged.filter(|([first, last], count)| *count > 0 && first + 1 < *last).collect();
+    Ok(Tweened { shown: shown(&sequence, &on_keys, drawn), held, exchanged })
 }
 
 /// The drawings on keys and between them, in time order.

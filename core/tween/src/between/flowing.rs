@@ -5,7 +5,8 @@
 //! are believed, the movement whose drawing is nearer to both keys is taken. If neither is, the earlier key is held. So it is where
 //! the flow brings little ink to ink: then the drawings have nothing in common, and strokes that look alike are alike by chance.
 //!
-//! Two drawings of one stroke each, which are a pair, are not judged: a ball may come near from far away.
+//! Two drawings of one stroke each, which are a pair, are not judged: a ball may come near from far away. Nor are drawings whose
+//! strokes are all paired one to one and look like their counterparts: a face that bends and turns is drawn with the same strokes.
 //!
 //! In a span that flows, the strokes of the earlier key flow ahead and are exchanged half way for those of the later key, which
 //! have flowed back until then. Pairs that agree with the flow, and pairs made by hand, are not exchanged: their strokes go
@@ -30,6 +31,9 @@ const STILL: f64 = 0.6;
 const NEARLY_ALL: f64 = 0.8;
 /// A flow is taken in place of matched strokes that can be believed if its drawing half way is at most this much as far from the keys.
 const NEARER: f64 = 0.98;
+/// Counterparts look like each other from this likeness on, and it is seen which is which from this share of the ink on.
+const ALIKE: f64 = 0.75;
+const TOLD_APART: f64 = 0.75;
 /// A pair agrees with the flow if its places end within this share of the drawing's size from their counterparts in the mean.
 const AGREES: f64 = 0.01;
 /// A pair shows where a flow may go from this confidence on.
@@ -79,6 +83,13 @@ pub(super) fn chosen(first: &[Stroke], second: &[Stroke], matching: &Matching, h
 /// Whether each of the drawings is one stroke, and the two are a pair: neither could be mistaken for another one.
 fn beyond_doubt(matching: &Matching, first: &[Stroke], second: &[Stroke]) -> bool {
     first.len() == 1 && second.len() == 1 && matching.pairs.len() == 1
+}
+
+/// Whether each stroke has a counterpart of its own that looks like it, more than others do. So it is where a person drew the same strokes again; tracing
+/// cuts lines anew.
+fn is_whole(matching: &Matching, first: &[Stroke], second: &[Stroke]) -> bool {
+    let one_to_one = matching.pairs.len() == first.len() && first.len() == second.len();
+    one_to_one && matching.likeness(first, second) >= ALIKE && matching.sureness(first, second) >= TOLD_APART
 }
 
 /// Places on the first drawing with their counterparts, from pairs that are evident.
@@ -136,7 +147,8 @@ impl Sequence {
         let mut ways = vec![Way::Matched; given.len()];
         for k in (0..given.len()).filter(|k| base.is_none_or(|base| base == *k)) {
             let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
-            if !beyond_doubt(&given[k], first, second) && given[k].sureness(first, second) < credible::SURE {
+            let doubted = given[k].sureness(first, second) < credible::SURE && !is_whole(&given[k], first, second);
+            if doubted && !beyond_doubt(&given[k], first, second) {
                 ways[k] = chosen(first, second, &given[k], &self.half_way(k), self.progress[k].clone());
             }
         }
@@ -164,6 +176,12 @@ impl Sequence {
             (None, Some(back)) => (back, f64::from(u8::from(share >= 0.5))),
             (None, None) => (Vec::new(), 0.0),
         }
+    }
+
+    /// The number of strokes that are exchanged half way between key `k` and the next one: those of the one drawing go, and others come in
+    /// their place.
+    pub fn exchanged_strokes(&self, k: usize) -> usize {
+        self.exchanged[k].iter().map(Vec::len).sum()
     }
 
     /// The drawing half way between key `k` and the next one by the matched strokes.

@@ -233,7 +233,7 @@ impl Matching {
 impl Matching {
     /// How much counterparts resemble each other in shape and length, 0 to 1, weighted by their ink. Ink without a
     /// counterpart counts 0.
-    fn likeness(&self, first: &[Stroke], second: &[Stroke]) -> f64 {
+    pub(crate) fn likeness(&self, first: &[Stroke], second: &[Stroke]) -> f64 {
         let single = |stroke: usize, strokes: &[Stroke]| Chain::single(stroke, strokes[stroke].closed);
         let line = |part: &InPieces| Chain::open(&part.pieces);
         let pairs = self.pairs.iter().map(|p| (single(p.from, first), single(p.to, second)));
