@@ -279,3 +279,21 @@ fn written(([frame, next], held): ([FrameNumber; 2], bool), matching: &Matching,
     }
     written
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_person_is_told_of_held_spans_and_of_strokes_that_are_exchanged() {
+        let nothing = Tweened::default();
+        assert_eq!((nothing.holding(), nothing.exchanging()), (None, None));
+        let done = Tweened { held: vec![[0, 4]], exchanged: vec![([4, 9], 1), ([9, 12], 7)], ..Tweened::default() };
+        assert!(done.holding().unwrap().starts_with("frames 0 to 4: no movement"));
+        let said = done.exchanging().unwrap();
+        assert!(
+            said.starts_with("frames 4 to 9 (1 stroke), 9 to 12 (7 strokes): strokes of one drawing give way"),
+            "{said}"
+        );
+    }
+}

@@ -195,6 +195,50 @@ fn a_drawing_that_is_held_is_said() {
     }
 }
 
+/// A face of eight strokes above a floor, at a place, turned and stretched.
+fn face(at: [f64; 2], turn: f64, size: [f64; 2]) -> Value {
+    let put = |x: f64, y: f64| {
+        let (x, y, (sin, cos)) = (x * size[0], y * size[1], turn.sin_cos());
+        [at[0] + cos * x - sin * y, at[1] + sin * x + cos * y]
+    };
+    let arc = |x: f64, y: f64, a: f64, b: f64, turns: f64, count: i32, closed: bool| {
+        let of = |k: i32| std::f64::consts::TAU * turns * f64::from(k) / f64::from(count);
+        let points: Vec<[f64; 2]> =
+            (0..count + i32::from(!closed)).map(|k| put(x + a * of(k).cos(), y + b * of(k).sin())).collect();
+        json!({"points": points, "closed": closed})
+    };
+    let mut strokes = vec![json!({"points": [[20, 453], [320, 453], [620, 453]], "closed": false})];
+    strokes.push(arc(0.0, 0.0, 75.0, 65.0, 1.0, 60, true));
+    for side in [-25.0, 25.0] {
+        strokes.push(arc(side, -15.0, 14.0, 18.0, 1.0, 32, true));
+        strokes.push(arc(side + 4.0, -11.0, 6.0, 7.0, 1.0, 20, true));
+        strokes.push(arc(side, -38.0, 12.0, -5.0, 0.5, 8, false));
+    }
+    strokes.push(arc(0.0, 14.0, 36.0, 14.0, 0.5, 16, false));
+    json!(strokes)
+}
+
+#[test]
+fn a_face_that_is_drawn_again_bends_and_moves_as_itself() {
+    let poses = [face([90.0, 400.0], -0.25, [1.2, 0.8]), face([299.0, 287.0], 0.0, [0.8, 1.25])];
+    let drawings: Vec<Value> =
+        [0, 10].iter().zip(&poses).map(|(frame, strokes)| json!({"frame": frame, "strokes": strokes})).collect();
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let out = folder.path().join("out.json");
+    let output = tween(&path, &out, &[]);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    let written: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+    let tracks = &written["matches"][0]["tracks"];
+    assert_eq!(tracks[0], tracks[1], "each stroke has its own number on both drawings");
+    for between in written["in_betweens"].as_array().unwrap() {
+        let strokes = between["strokes"].as_array().unwrap();
+        assert_eq!(strokes.len(), 9, "frame {}", between["frame"]);
+        let floor = strokes.iter().find(|stroke| stroke["track"] == tracks[0][0]).unwrap();
+        let level = |point: &Value| (point[1].as_f64().unwrap() - 453.0).abs() < 0.5;
+        assert!(floor["points"].as_array().unwrap().iter().all(level), "the floor stays: {floor}");
+    }
+}
+
 #[test]
 fn a_breakdown_is_suggested_where_the_line_test_differs_most() {
     // The bar runs ahead of an even movement, most of all on frame 8.
