@@ -93,8 +93,9 @@ fn drawn_strokes_are_kept_and_followed_both_ways() {
 }
 
 #[test]
-fn a_range_is_traced_and_earlier_results_beside_it_stay() {
-    let earlier = json!([{"frame": 0, "strokes": [{"track": 7, "points": [[1, 1], [9, 9]], "closed": false}]},
+fn a_range_is_traced_with_the_numbers_of_earlier_results_beside_it_which_stay() {
+    let post = json!({"track": 7, "points": [[50, 20], [50, 60], [50, 100]], "closed": false});
+    let earlier = json!([{"frame": 0, "strokes": [post]},
         {"frame": 2, "strokes": []}]);
     let (folder, path) = project(json!({"traced": earlier}));
     let out = folder.path().join("traced.json");
@@ -102,7 +103,8 @@ fn a_range_is_traced_and_earlier_results_beside_it_stay() {
     let found = numbers(&read(&out));
     assert_eq!(found[0], (0, vec![7]));
     assert_eq!(found[1..].iter().map(|f| f.0).collect::<Vec<_>>(), [2, 3]);
-    assert!(found[1].1.len() == 3 && found[1].1.iter().all(|n| *n != 7), "a number means one stroke: {found:?}");
+    assert_eq!(found[1].1, [7, 8, 9], "the post is itself, bar and ring are new");
+    assert_eq!(found[2].1, found[1].1);
 }
 
 #[test]
