@@ -5,6 +5,7 @@
 //! fails, or that the system ends for want of memory, ends nothing else.
 //!
 //! - [`manifest`]: the manifest and everything that may be wrong with it
+//! - [`names`]: names in the folder of the results
 //! - [`strict`]: JSON in which no field is given twice
 //! - [`step`]: the steps; each is described once, as the words of a subcommand
 //! - [`digest`]: hashes of what a step reads
@@ -42,6 +43,7 @@ pub mod jobs;
 pub mod limits;
 pub mod lock;
 pub mod manifest;
+pub mod names;
 pub mod page;
 pub mod peak;
 pub mod queue;

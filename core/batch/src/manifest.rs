@@ -10,11 +10,9 @@
 //!
 //! `project` and `blend` are relative to the manifest's folder. A shot may have `steps` of its own.
 
-use crate::page::PAGE;
-use crate::report::REPORT;
+use crate::names::{RESERVED, safe_name};
 use crate::step::{self, Step};
 use crate::strict;
-use crate::summary::SUMMARY;
 use rototoon::file;
 use rototoon::project::{Document, described};
 use rototoon::scene::Footage;
@@ -27,10 +25,6 @@ use std::path::{Path, PathBuf};
 pub const VERSION: u64 = 1;
 /// Greatest number of shots.
 pub const MOST_SHOTS: usize = 100_000;
-/// Greatest number of bytes of a shot's name. It becomes the name of a folder.
-const LONGEST_NAME: usize = 120;
-/// Names in the folder of the results that belong to the batch.
-const RESERVED: [&str; 3] = [PAGE, SUMMARY, REPORT];
 /// Number of problems that are listed.
 const MOST_PROBLEMS: usize = 20;
 
@@ -239,25 +233,6 @@ fn one_name_for_many(shot: &Shot) -> Option<String> {
         .then(|| format!("shot {name:?}: render: to: found {file:?} for frames {first} to {last}, expected {expected}"))
 }
 
-/// Checks a name that becomes that of a file or folder on any system.
-///
-/// # Errors
-///
-/// What was expected.
-pub fn safe_name(name: &str) -> Result<(), String> {
-    let wrong = |c: char| c.is_control() || "/\\:*?\"<>|".contains(c);
-    if name.is_empty() || name.len() > LONGEST_NAME {
-        return Err(format!("a name of 1 to {LONGEST_NAME} bytes"));
-    }
-    if name.contains(wrong) {
-        return Err("a name without / \\ : * ? \" < > |".into());
-    }
-    if name.starts_with('.') || name.ends_with(['.', ' ']) {
-        return Err("a name that does not begin with a dot, nor end with a dot or a blank".into());
-    }
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -331,15 +306,5 @@ mod tests {
         let text = r#"{"rototoon_batch": 1, "steps": [{"do": "snap"}], "shots": [{"name": "a", "project": "p"}]}"#;
         let found = Manifest::parse(text, Path::new(""), &refuse).unwrap_err();
         assert_eq!(found[0], "steps[0]: unknown 4");
-    }
-
-    #[test]
-    fn names_are_those_of_folders_everywhere() {
-        for name in ["sh010", "Szene 3", "鳥"] {
-            assert_eq!(safe_name(name), Ok(()), "{name}");
-        }
-        for name in ["", "..", ".a", "a.", "a b ", "a:b", "a\nb", &"a".repeat(121)] {
-            assert!(safe_name(name).is_err(), "{name}");
-        }
     }
 }

@@ -14,8 +14,6 @@ use std::io::{Error, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// Name of the file, where no other is asked for.
-pub const REPORT: &str = "report.jsonl";
 /// What the first line of a report begins with, without quotes.
 const BEGIN: &str = "{event:";
 /// Number of bytes that are read of a file to know it as a report.

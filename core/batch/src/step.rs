@@ -4,7 +4,7 @@
 //! manifest are the options of the subcommand, with `_` for `-`. `to` is the name of what it writes, without a folder; so is
 //! `report` of `track`. A step writes nothing else, so that no file is written that the record does not know.
 
-use crate::manifest::safe_name;
+use crate::names::safe_name;
 use rototoon::project::described;
 use rototoon::scene::{FramePattern, PatternError};
 use serde_json::Value;

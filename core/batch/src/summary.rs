@@ -2,15 +2,13 @@
 
 use crate::findings::WantedKey;
 use crate::manifest::{Manifest, Shot};
+use crate::names::SUMMARY;
 use crate::record::{RECORD, Record};
 use crate::report::rounded;
 use rototoon::project::{WriteError, write_whole};
 use serde_json::{Value, json};
 use std::io::ErrorKind;
 use std::path::Path;
-
-/// Name of the file.
-pub const SUMMARY: &str = "summary.json";
 
 /// How a shot came out.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,10 +9,11 @@ use rototoon::project::Inputs;
 use rototoon::scene::FrameNumber;
 use rototoon_batch::budget::Budget;
 use rototoon_batch::manifest::{Manifest, Shot};
-use rototoon_batch::page::{self, PAGE};
+use rototoon_batch::names::{PAGE, REPORT, SUMMARY};
+use rototoon_batch::page;
 use rototoon_batch::report;
 use rototoon_batch::run::{self, BatchError, Options};
-use rototoon_batch::summary::{Outcome, SUMMARY, Summary};
+use rototoon_batch::summary::{Outcome, Summary};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -129,7 +130,7 @@ pub fn named(path: &Path, manifest: &Manifest) -> Inputs {
 
 /// Where the report goes: to a report that is there, or where nothing is and nothing will be.
 fn report_path(given: &ArgMatches, manifest: &Manifest, (path, folder): (&Path, &Path)) -> Result<PathBuf, Failure> {
-    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join(report::REPORT));
+    let report = given.get_one::<PathBuf>("report").cloned().unwrap_or_else(|| folder.join(REPORT));
     named(path, manifest).check(&report)?;
     let mut taken = [PAGE, SUMMARY].into_iter().chain(manifest.shots.iter().map(|shot| shot.name.as_str()));
     if taken.any(|name| report == folder.join(name)) {

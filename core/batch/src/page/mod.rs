@@ -10,6 +10,7 @@ mod keys;
 pub mod sheet;
 
 use crate::findings::WantedKey;
+use crate::names::PAGE;
 use crate::summary::{Entry, Outcome, Summary, write_own};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -20,8 +21,6 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// Name of the file.
-pub const PAGE: &str = "index.html";
 /// What tells a page of a batch from others.
 const MARK: &str = "<meta name=\"generator\" content=\"rototoon batch\">";
 /// Number of shots with pictures. The shots to work on come first.

@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn of_two_on_the_same_ink_the_one_that_came_from_farther_has_ended() {
-        let before = || [bar(0.0, 0.0, 40.0), bar(0.0, 25.0, 40.0)];
+        let before = || [bar(0.0, 0.0, 40.0), bar(0.0, 15.0, 40.0)];
         let after = |far: [f64; 2]| [(bar(3.0, 0.0, 40.0), far[0]), (bar(3.0, 0.5, 38.0), far[1])];
         assert_eq!(settle(before(), after([1.0, 20.0])), [true, false]);
         assert_eq!(settle(before(), after([20.0, 1.0])), [false, true]);
