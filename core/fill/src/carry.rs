@@ -5,9 +5,9 @@
 //! own drawings before and behind, and the last drawing that was painted: own drawings are right but far away, the last one is near
 //! but may be wrong. How sure each colour is says [`confidence`](crate::confidence).
 
-use crate::confidence::{evidence, probability};
+use crate::confidence::{evidence, of_one_colour, probability};
 use crate::layout::Layout;
-use crate::leaks::leaks;
+use crate::leaks::{leaks, swallowed};
 use crate::meet::{Table, meeting};
 use crate::page::{Page, Paint};
 use crate::relax::relax;
@@ -49,6 +49,15 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
     }
     paint.evidence = evidence(&known, &page.layout, &paint);
     paint.confidence = paint.evidence.iter().map(|own| own.as_ref().map_or(0.0, probability)).collect();
+    let seen = sources.iter().zip(&shifts).filter_map(|(source, both)| {
+        let back = &both.as_ref()?.back;
+        Some(swallowed(&source.page.layout, source.paint, (&page.layout, &paint), back))
+    });
+    // A thing that one of the sources does not show either has gone before.
+    let least = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.min(*b)).collect();
+    if let Some(shares) = seen.reduce(least) {
+        paint.confidence.iter_mut().zip(shares).for_each(|(own, share)| *own = own.min(of_one_colour(share)));
+    }
     number(&mut paint, last.paint, &last.relaxed.all, &page.layout, next);
     Some(paint)
 }

@@ -23,9 +23,36 @@ const LEAST: f64 = 150.0;
 /// A cell and how deep it is.
 type Deep = (f32, usize);
 
+/// For each region the painted ones that lie in it: colour, region and area.
+type Within = BTreeMap<usize, Vec<(usize, usize, f64)>>;
+
 /// The regions of `to` that leak, each with the places in pixels between which it is to be split. `back` are the shifts from `to` to
 /// the drawing `from`, which is painted by `paint`.
 pub fn leaks(from: &Layout, paint: &Paint, to: &Layout, back: &Shifts) -> Vec<(usize, Vec<Point>)> {
+    let (seen, within) = within(from, paint, to, back);
+    let mixed = within.into_iter().filter(|(_, own)| own.iter().any(|other| other.0 != own[0].0));
+    mixed.filter_map(|(region, own)| Some((region, places(region, &own, to, &seen)?))).collect()
+}
+
+/// For each region of `to` the share of it that came from regions of other colours than its own in `paint`, most of which it covers. They have
+/// vanished, or it leaks where no narrow gap is.
+pub fn swallowed(from: &Layout, known: &Paint, (to, paint): (&Layout, &Paint), back: &Shifts) -> Vec<f64> {
+    let (_, within) = within(from, known, to, back);
+    let mut inside = vec![0.0f64; to.figures.len()];
+    to.inside.data().iter().for_each(|&region| inside[region as usize] += 1.0);
+    let mut shares = vec![0.0; to.figures.len()];
+    for (region, own) in within {
+        let other = own.iter().filter(|&&(colour, source, area)| {
+            paint.colour(region).is_some_and(|painted| painted != colour) && area >= MOST * from.figures[source].area
+        });
+        shares[region] = other.map(|found| found.2).sum::<f64>() / inside[region].max(1.0);
+    }
+    shares
+}
+
+/// The painted regions of `from` of which most comes to lie in one region of `to`, by that region: each with its colour and its area there.
+/// Also the region of `from` that is seen in each cell of `to`.
+fn within(from: &Layout, paint: &Paint, to: &Layout, back: &Shifts) -> (Raster<u32>, Within) {
     let (width, height) = (to.inside.width(), to.inside.height());
     let seen = Raster::from_fn(width, height, |x, y| from.nearest_at(back.carry(to.place(x, y))));
     let mut came: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -35,14 +62,13 @@ pub fn leaks(from: &Layout, paint: &Paint, to: &Layout, back: &Shifts) -> Vec<(u
         whole[source as usize] += 1.0;
     }
     let least = LEAST * to.unit * to.unit;
-    let mut within: BTreeMap<usize, Vec<(usize, usize, f64)>> = BTreeMap::new();
+    let mut within = Within::new();
     for (&(region, source), &area) in &came {
         if let Some(colour) = paint.colour(source).filter(|_| area >= least && area >= MOST * whole[source]) {
             within.entry(region).or_default().push((colour, source, area));
         }
     }
-    let mixed = within.into_iter().filter(|(_, own)| own.iter().any(|other| other.0 != own[0].0));
-    mixed.filter_map(|(region, own)| Some((region, places(region, &own, to, &seen)?))).collect()
+    (seen, within)
 }
 
 /// The places between which a region is split: the deepest one of each of its areas, from the largest on, that gaps part from all
@@ -129,7 +155,14 @@ mod tests {
         let (region, places) = &found[0];
         assert_eq!((*region, places.len()), (2, 2));
         assert!((places[0].x < 200.0) != (places[1].x < 200.0), "one place in each room: {places:?}");
-        assert!(leaks(&closed, &paint, &rooms(120), &still).is_empty(), "a wide opening is no gap");
+        let wide = rooms(120);
+        assert!(leaks(&closed, &paint, &wide, &still).is_empty(), "a wide opening is no gap");
+        // Both rooms have the colour of one of them.
+        let mut one = Paint::nothing(2, 3);
+        (one.colours[1][0], one.colours[2][1]) = (1.0, 1.0);
+        let shares = swallowed(&closed, &paint, (&wide, &one), &still);
+        assert!(shares[1] == 0.0 && (shares[2] - 0.5).abs() < 0.02, "{shares:?}");
+        assert_eq!(swallowed(&closed, &paint, (&closed, &paint), &still), [0.0; 4]);
         assert!(leaks(&closed, &paint, &closed, &still).is_empty());
     }
 
