@@ -101,7 +101,11 @@ def picture(pattern: str, number: int) -> str:
 
 
 def pattern_of(ob) -> str:
-    """The absolute pattern of an object's footage. Raises a `Problem` if the pictures are missing."""
+    """The absolute pattern of an object's footage. Raises a `Problem` if the pictures are missing.
+
+    The frames of a movie may have left the cache, or the file may be opened on another machine. Then they are those that this machine's
+    cache has. Without a window they are made again; in a window that would block it.
+    """
     import bpy
 
     settings = ob.rototoon
@@ -113,8 +117,28 @@ def pattern_of(ob) -> str:
     for number in (settings.first, settings.last):
         path = picture(pattern, number)
         if not os.path.isfile(path):
+            if settings.movie:
+                return _of_movie(absolute(ob, settings.movie))
             raise Problem(f"No picture {path}: the footage was moved or renamed; choose it again in the panel Footage")
     return pattern
+
+
+def _of_movie(path: str) -> str:
+    """The pattern of a movie's frames in the cache of this machine."""
+    import bpy
+
+    from . import movie, preferences
+
+    if not os.path.isfile(path):
+        raise Problem(f"No movie {path}, and its frames are not in the cache: choose the footage again in the panel Footage")
+    cache = preferences.cache_folder()
+    if movie.cached(path, cache) is None and bpy.app.background:
+        for _ in movie.extract(path, cache):
+            pass
+    frames = movie.cached(path, cache)
+    if frames is None:
+        raise Problem(f"The frames of {path} are not in the cache of this machine: choose the movie again in the panel Footage")
+    return frames.pattern
 
 
 def absolute(ob, path: str) -> str:

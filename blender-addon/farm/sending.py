@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 from rototoon import RototoonError
 
-from ..blender import footage, guard
+from ..blender import footage, guard, preferences
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..capture import document, tracking
@@ -102,6 +102,14 @@ def _document(ob: bpy.types.Object) -> dict[str, Any]:
         raise tracking.nothing_to_track()
     _need_picture(reading.document)
     return reading.document
+
+
+def of_movies(shots: Iterable[dict[str, Any]]) -> list[str]:
+    """The objects whose pictures are in this machine's cache of movies."""
+    cache = os.path.normcase(os.path.realpath(preferences.cache_folder()))
+    patterns = {shot["object"]: shot["document"]["footage"]["pattern"] for shot in shots}
+    folders = {name: os.path.normcase(os.path.realpath(os.path.dirname(pattern))) for name, pattern in patterns.items()}
+    return [name for name, folder in folders.items() if os.path.dirname(folder) == cache]
 
 
 def _need_picture(document: dict[str, Any]) -> None:

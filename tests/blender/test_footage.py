@@ -163,6 +163,44 @@ def test_movie_becomes_a_sequence_in_the_cache(addon, tmp_path):
     addon("blender.preferences").preferences().cache_folder = ""
 
 
+@pytest.fixture
+def movie_shot(addon, tmp_path):
+    """An object with a movie as footage, with a cache of its own."""
+    preferences = addon("blender.preferences").preferences()
+    make_movie(tmp_path / "shot.mp4", sorted(shots.draw_sequence(tmp_path / "frames").parent.iterdir()))
+    preferences.cache_folder = str(tmp_path / "cache")
+    bpy.ops.rototoon.setup(filepath=str(tmp_path / "shot.mp4"))
+    yield bpy.context.object
+    preferences.cache_folder = ""
+
+
+def test_frames_of_a_movie_that_left_the_cache_are_made_again(addon, movie_shot, tmp_path):
+    footage, movie = addon("blender.footage"), addon("blender.movie")
+    before = footage.pattern_of(movie_shot)
+    shutil.rmtree(tmp_path / "cache")
+    assert footage.pattern_of(movie_shot) == before, "tests run without a window"
+    assert Path(before % 9).is_file()
+    # Another machine keeps them elsewhere.
+    addon("blender.preferences").preferences().cache_folder = str(tmp_path / "other")
+    shutil.rmtree(tmp_path / "cache")
+    assert Path(footage.pattern_of(movie_shot)).parent.parent == tmp_path / "other"
+    shutil.rmtree(tmp_path / "other")
+    Path(tmp_path / "shot.mp4").unlink()
+    with pytest.raises(addon("blender.errors").Problem, match=r"No movie .*shot\.mp4, and its frames are not in the cache"):
+        footage.pattern_of(movie_shot)
+    assert movie.PICTURE in before
+
+
+def test_a_farm_is_told_of_frames_in_the_cache(addon, fake, movie_shot, tmp_path):
+    shots.draw(addon, movie_shot, 1, [shots.diamond(0)])
+    shots.draw(addon, movie_shot, 9, [shots.diamond(8)])
+    bpy.ops.rototoon.match_contours()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.ops.rototoon.send_to_farm(directory=str(tmp_path / "farm"))
+    report = addon("scripting").take_reports()[-1]
+    assert f'the footage of "{movie_shot.name}" is a movie' in str(report), report
+
+
 def test_broken_off_movie_leaves_nothing(addon, tmp_path):
     first = shots.draw_sequence(tmp_path / "frames")
     movie_path = tmp_path / "shot.mp4"

@@ -108,6 +108,13 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
         batch.write(self._folder, shots, choices)
         if left:
             self.warn("left out: " + "; ".join(_first(left)))
+        movies = sending.of_movies(shots)
+        if movies:
+            names = ", ".join(f'"{name}"' for name in _first(movies))
+            self.warn(
+                f"the footage of {names} is a movie, whose frames are in the cache of this machine: for workers on others set the Cache Folder "
+                "in the preferences to one that all see under the same path, choose the movie again, and send"
+            )
         if any(not shot["blend"] for shot in shots):
             self.warn("this file was never saved: save it, so that the results find it again")
         return f"{counted(len(shots), 'shot')} in {os.path.join(self._folder, batch.MANIFEST)}"
