@@ -141,6 +141,11 @@ def _of_movie(path: str) -> str:
     return frames.pattern
 
 
+def rate(ob) -> float:
+    """The frames a second of an object's footage, as its artist gave them: Blender keeps seven digits, 23.976 as 23.975999832…"""
+    return float(f"{ob.rototoon.fps:.7g}")
+
+
 def absolute(ob, path: str) -> str:
     """The absolute form of a path that an object keeps. Of a linked or overridden object it is relative to the object's file."""
     import bpy

@@ -61,7 +61,7 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
         "pattern": pattern,
         "first": settings.first,
         "last": settings.last,
-        "fps": settings.fps,
+        "fps": footage.rate(ob),
         "width": settings.width,
         "height": settings.height,
     }

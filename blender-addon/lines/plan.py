@@ -178,7 +178,7 @@ def footage_of(ob, pattern: str) -> dict[str, Any]:
         "pattern": pattern,
         "first": settings.first,
         "last": settings.last,
-        "fps": settings.fps,
+        "fps": footage.rate(ob),
         "width": settings.width,
         "height": settings.height,
     }

@@ -163,6 +163,13 @@ def test_movie_becomes_a_sequence_in_the_cache(addon, tmp_path):
     addon("blender.preferences").preferences().cache_folder = ""
 
 
+@pytest.mark.parametrize("fps", [23.976, 24000 / 1001, 29.97, 12.0, 59.94])
+def test_rates_are_written_as_they_were_given(addon, tmp_path, fps):
+    ob = shots.set_up(tmp_path)
+    ob.rototoon.fps = fps
+    assert addon("blender.footage").rate(ob) == float(f"{fps:.7g}")
+
+
 @pytest.fixture
 def movie_shot(addon, tmp_path):
     """An object with a movie as footage, with a cache of its own."""
