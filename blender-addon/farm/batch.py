@@ -51,10 +51,11 @@ class Choices:
 
 def write(folder: str, shots: Sequence[Mapping[str, Any]], choices: Choices) -> list[str]:
     """Writes a batch. Returns the names of the shots, in the order of `shots`. Raises a `Problem` before anything is written if a
-    file of somebody else is in the way."""
+    file of somebody else is in the way, or the folder has shots of files that are not among these."""
     place = Path(folder)
     names = shot_names(shots)
     before = _sent(place)
+    _need_no_others(before, {_relative(place, shot["blend"]) for shot in shots})
     wanted = {SHOTS + f"/{name}.json": _document(place, shot["document"]) for name, shot in zip(names, shots, strict=True)}
     wanted[MANIFEST] = _json(_manifest(place, names, shots, choices))
     if choices.jobs in {"OPENJD", "ALL"}:
@@ -66,15 +67,24 @@ def write(folder: str, shots: Sequence[Mapping[str, Any]], choices: Choices) -> 
     known = {name: list(hashes) for name, hashes in before.get("files", {}).items()}
     for name in wanted:
         _need_own(place / name, known.get(name))
-    listed = [_listed(place, name, shot) for name, shot in zip(names, shots, strict=True)]
+    entries = [_listed(place, name, shot) for name, shot in zip(names, shots, strict=True)]
     new = {name: [_hash(content.encode())] for name, content in wanted.items()}
     # First with the old files too, so that a second try knows all files of one that was ended.
     for hashes in ({name: known.get(name, []) + new.get(name, []) for name in known | new}, known | new):
-        _put(place / SENT, _json({"rototoon_sent": VERSION, "shots": listed, "files": hashes}))
+        _put(place / SENT, _json({"rototoon_sent": VERSION, "shots": entries, "files": hashes}))
         for name, content in wanted.items():
             _put(place / name, content)
         wanted = {}
     return names
+
+
+def _need_no_others(before: Mapping[str, Any], blends: set[str]) -> None:
+    """Shots of other files would leave the manifest, and jobs that wait for them would do these ones."""
+    had = [shot.get("blend") for shot in before.get("shots", []) if isinstance(shot, dict)]
+    others = sorted({blend for blend in had if blend} - blends)
+    if others:
+        named = ", ".join(others)
+        raise Problem(f"This folder has the batch of {named}: choose another folder, or send all files of a folder together")
 
 
 def _listed(place: Path, name: str, shot: Mapping[str, Any]) -> dict[str, Any]:

@@ -93,6 +93,16 @@ def test_nothing_of_others_is_replaced(addon, sent, tmp_path):
         bpy.ops.rototoon.send_to_farm(directory=str(other), engine="NONE")
 
 
+def test_another_file_does_not_take_the_folder_of_one(addon, sent, tmp_path):
+    before = (tmp_path / "farm/manifest.json").read_text()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "second.blend"))
+    with pytest.raises(RuntimeError, match=r"This folder has the batch of \.\./shot\.blend: choose another folder"):
+        bpy.ops.rototoon.send_to_farm(directory=str(tmp_path / "farm"))
+    assert (tmp_path / "farm/manifest.json").read_text() == before
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.ops.rototoon.send_to_farm(directory=str(tmp_path / "farm"))
+
+
 def test_names_can_be_those_of_folders(addon):
     names = addon("farm.batch").shot_names
     shot = lambda blend, name: {"blend": blend, "object": name}  # noqa: E731 - short
