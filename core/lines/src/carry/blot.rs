@@ -26,13 +26,14 @@ const REACH: f64 = 12.0;
 const EDGE: f64 = 3.0;
 /// Places of a patch that are compared, about.
 const PLACES: usize = 1500;
+/// Least difference of the brightness around and inside, of 1.
+const DARKER: f64 = 0.2;
 /// Largest mean difference of a patch, in contrasts.
 const DIFFERS: f64 = 1.0 / 3.0;
 
-/// A solid shape of the drawing `from` on the drawing `to`. `expected` are the points of its outline where they are expected. `None` if it has
-/// ended.
-pub fn found(from: &Drawing, outline: &[Point], expected: &[Point], to: &Drawing) -> Option<Laid> {
-    let patch = Patch::of(from, outline)?;
+/// The shape of a patch of the drawing `from` on the drawing `to`. `expected` are the points of its outline where they are expected. `None` if it
+/// has ended.
+pub fn found(patch: &Patch, from: &Drawing, outline: &[Point], expected: &[Point], to: &Drawing) -> Option<Laid> {
     let about = carried_along(outline, expected);
     let shift = patch.place(to, about);
     let off = patch.differs(to, shift) / patch.contrast;
@@ -40,7 +41,7 @@ pub fn found(from: &Drawing, outline: &[Point], expected: &[Point], to: &Drawing
     if off > DIFFERS {
         return None;
     }
-    let moves = edges(from, outline, Point::ZERO, &patch).into_iter().zip(edges(to, outline, shift, &patch));
+    let moves = edges(from, outline, Point::ZERO, patch).into_iter().zip(edges(to, outline, shift, patch));
     let moves = smoothed(moves.map(|(before, after)| after - before).collect());
     let normals = normals(outline);
     let points = outline.iter().zip(normals.iter().zip(moves)).map(|(p, (n, by))| *p + shift + *n * by).collect();
@@ -48,7 +49,7 @@ pub fn found(from: &Drawing, outline: &[Point], expected: &[Point], to: &Drawing
 }
 
 /// A solid shape and what is around it.
-struct Patch {
+pub struct Patch {
     /// Places inside and around, with their brightnesses.
     inside: Vec<(Point, f64)>,
     around: Vec<(Point, f64)>,
@@ -59,8 +60,8 @@ struct Patch {
 }
 
 impl Patch {
-    /// The patch of an outline. `None` if it is not darker than what is around it.
-    fn of(drawing: &Drawing, outline: &[Point]) -> Option<Self> {
+    /// The patch of an outline. `None` if it is not clearly darker inside than around: then it is a line with paint in it.
+    pub fn of(drawing: &Drawing, outline: &[Point]) -> Option<Self> {
         let unit = drawing.unit;
         let picture = &*drawing.picture;
         let grown = grown(outline, RIM * unit);
@@ -79,7 +80,13 @@ impl Patch {
         let (inside, around): (Vec<_>, Vec<_>) = places.partition(|(p, _)| polygon::contains(outline, *p));
         let mean = |of: &[(Point, f64)]| of.iter().map(|(_, value)| value).sum::<f64>() / of.len() as f64;
         let (dark, light) = (mean(&inside), mean(&around));
-        (light > dark).then_some(Self { inside, around, half: 0.5 * (light + dark), contrast: light - dark, unit })
+        (light - dark >= DARKER).then_some(Self {
+            inside,
+            around,
+            half: 0.5 * (light + dark),
+            contrast: light - dark,
+            unit,
+        })
     }
 
     /// The shift to where the drawing differs least, near an expected one.
@@ -200,6 +207,10 @@ mod tests {
         Drawing::new(Arc::new(picture), &Options::default())
     }
 
+    fn look(from: &Drawing, outline: &[Point], expected: &[Point], to: &Drawing) -> Option<Laid> {
+        found(&Patch::of(from, outline).unwrap(), from, outline, expected, to)
+    }
+
     #[test]
     fn a_small_shape_is_found_where_it_went() {
         let (radii, from) = (Point::new(4.0, 6.0), Point::new(120.0, 200.0));
@@ -209,7 +220,7 @@ mod tests {
             let after = eye(from + shift, radii * grown);
             // It is expected four pixels beside.
             let expected: Vec<Point> = outline.iter().map(|p| *p + shift + Point::new(4.0, -2.0)).collect();
-            let laid = found(&before, &outline, &expected, &after).unwrap();
+            let laid = look(&before, &outline, &expected, &after).unwrap();
             let away = |p: &Point| ((((*p - from - shift) / (radii * grown)).length() - 1.0) * radii.x).abs();
             let off = laid.points.iter().map(away).fold(0.0, f64::max);
             assert!(laid.closed && off < 0.75, "{off} px for {shift} and {grown}");
@@ -222,8 +233,14 @@ mod tests {
         let (radii, at) = (Point::new(4.0, 6.0), Point::new(120.0, 200.0));
         let outline = oval(at, radii);
         let gone = eye(at, Point::splat(0.4));
-        assert!(found(&eye(at, radii), &outline, &outline, &gone).is_none());
-        assert!(found(&gone, &outline, &outline, &eye(at, radii)).is_none(), "nothing dark was there before");
+        assert!(look(&eye(at, radii), &outline, &outline, &gone).is_none());
+        assert!(Patch::of(&gone, &outline).is_none(), "nothing dark was there before");
+    }
+
+    #[test]
+    fn a_line_with_paint_in_it_is_no_patch() {
+        let at = Point::new(120.0, 200.0);
+        assert!(Patch::of(&eye(at, Point::splat(4.0)), &oval(at, Point::new(26.0, 30.0))).is_none());
     }
 
     #[test]
@@ -231,7 +248,7 @@ mod tests {
         let (radii, at) = (Point::new(5.0, 6.0), Point::new(120.0, 200.0));
         // It is drawn a little too small.
         let outline = oval(at, radii * 0.8);
-        let laid = found(&eye(at, radii), &outline, &outline, &eye(at, radii)).unwrap();
+        let laid = look(&eye(at, radii), &outline, &outline, &eye(at, radii)).unwrap();
         assert!(laid.points.iter().zip(&outline).all(|(p, q)| p.distance(*q) < 0.05));
     }
 }

@@ -91,8 +91,11 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
         .enumerate()
         .map(|(k, Tracked { stroke, .. })| {
             let expected = moved(stroke, &registered.lengths[k], &registered.shifts[k]);
-            if stroke.fill && stroke.closed {
-                return solid(from, &stroke.points, &expected, (to, &solids), registered.signs[k]);
+            if stroke.fill
+                && stroke.closed
+                && let Some(patch) = blot::Patch::of(from, &stroke.points)
+            {
+                return solid((from, &patch), &stroke.points, &expected, (to, &solids), registered.signs[k]);
             }
             kept(ink.follow(&expected, stroke.closed), stroke.closed, registered.signs[k])
         })
@@ -133,7 +136,7 @@ fn covered<'a>(lines: impl Iterator<Item = (&'a [Point], bool)>, reach: f64) -> 
 
 /// A solid shape on the outline of one there, or where it is [found](blot) without.
 fn solid(
-    from: &Drawing,
+    (from, patch): (&Drawing, &blot::Patch),
     outline: &[Point],
     expected: &[Point],
     (to, solids): (&Drawing, &follow::Ink),
@@ -144,7 +147,7 @@ fn solid(
         return kept(followed, true, signs);
     }
     // What registration says of it is what it says of lines.
-    blot::found(from, outline, expected, to)
+    blot::found(patch, from, outline, expected, to)
 }
 
 /// The mean way of points from their places to the expected ones.
