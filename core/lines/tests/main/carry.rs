@@ -103,6 +103,16 @@ fn a_held_drawing_changes_nothing() {
 }
 
 #[test]
+fn lines_with_paint_in_them_are_carried_as_lines() {
+    let (before, after) = (posed(0.0), posed(1.0));
+    let mut painted = tracked(&before);
+    painted.iter_mut().for_each(|s| s.stroke.fill = s.stroke.closed);
+    let found = carry(&drawing(&before), &painted, &drawing(&after), &mut 12);
+    assert!(right(&found[..], &after) > 0.95, "{}", right(&found, &after));
+    assert!((0..3).all(|track| found.iter().any(|s| s.track == track && s.stroke.fill)), "head and eyes");
+}
+
+#[test]
 fn drawings_without_ink_end_all_strokes() {
     let lines = posed(0.0);
     let (full, empty) = (drawing(&lines), drawing(&[]));
