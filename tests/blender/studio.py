@@ -10,6 +10,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -149,7 +150,10 @@ def call(name: str, folder) -> set[str]:
 
 
 def placed(value, folder):
-    return value.replace("{folder}", str(folder)) if isinstance(value, str) else value
+    """A value with the folder of the test and the name of the open file in it."""
+    if not isinstance(value, str):
+        return value
+    return value.replace("{folder}", str(folder)).replace("{file}", Path(bpy.data.filepath).stem)
 
 
 def _loose_stroke(addon, ob):
@@ -307,7 +311,7 @@ OPERATORS = {
     "reshape_picture": Call(options={"character": "plain"}),
     "save_clip": Call(changes=False),
     "save_clip_from_armature": Call(on="Rig", changes=False, prepare=_bones_known, options={"first": 1, "last": 4}),
-    "send_to_farm": Call(changes=False, options={"directory": "{folder}/farm2"}),
+    "send_to_farm": Call(changes=False, options={"directory": "{folder}/farm of {file}"}),
     "setup": Call(changes=False, options={"filepath": "{folder}/frames/shot_001.png"}),
     "show_confidence": Call(),
     "snap": Call(frozenset({SNAPPED}), prepare=_moved_and_tracked),
