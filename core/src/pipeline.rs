@@ -31,7 +31,7 @@ pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
-pub use paint::undrawn;
+pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use render::render;
 pub use report::{Counts, PartReport, Report, Weakest};

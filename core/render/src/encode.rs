@@ -79,16 +79,18 @@ pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, Enco
     let (width, height) = (picture.width(), picture.height());
     match format {
         Format::Png => {
-            let shown = |&[r, g, b, alpha]: &[f32; 4]| {
-                let whole = if alpha > 0.0 { alpha } else { 1.0 };
-                let [r, g, b] = [r, g, b].map(|v| alpha * colour::encode(v / whole));
-                [r, g, b, alpha]
-            };
-            let shown = Raster::from_fn(width, height, |x, y| shown(&picture.get(x, y)));
+            let shown = Raster::from_fn(width, height, |x, y| displayed(picture.get(x, y)));
             premultiplied(&shown)
         }
         Format::Exr => exr(picture, ["R", "G", "B", "A"], |pixel, channel| pixel[channel]),
     }
+}
+
+/// A pixel of linear light multiplied by alpha as display colours (sRGB) multiplied by alpha. Without alpha it is black.
+pub fn displayed([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
+    let whole = if alpha > 0.0 { alpha } else { 1.0 };
+    let [r, g, b] = [r, g, b].map(|v| alpha * colour::encode(v / whole));
+    [r, g, b, alpha]
 }
 
 /// Encodes a matte (0 to 1).

@@ -38,66 +38,128 @@ pub struct Region {
     pub opacity: f32,
 }
 
+impl Region {
+    /// The region with each of its points moved.
+    #[must_use]
+    pub fn moved(mut self, to: impl Fn(Point) -> Point) -> Self {
+        self.areas.iter_mut().chain(&mut self.holes).flatten().for_each(|point| *point = to(*point));
+        self
+    }
+}
+
 /// The share of each region in each pixel of a picture. Regions go from the back to the front; a share's `part` is an index of them.
 pub fn shares(regions: &[Region], width: usize, height: usize) -> Visible {
     Visible::in_bands(width, height, |band| {
         let mut shown = vec![Vec::new(); band.width() * band.height()];
-        let mut left = vec![1.0f32; shown.len()];
-        for (part, region) in regions.iter().enumerate().rev() {
-            let Some((window, own)) = area(region, band) else { continue };
-            for y in window.top..window.bottom {
-                let first = (y - band.top) as usize * band.width() + window.left as usize;
-                for (x, own) in own.row((y - window.top) as usize).iter().enumerate() {
-                    let coverage = (region.opacity * own).min(left[first + x]);
-                    if coverage >= LEAST {
-                        left[first + x] -= coverage;
-                        shown[first + x].push(Share { part, coverage });
-                    }
-                }
-            }
-        }
+        each_share(regions, band, &mut || true, |pixel, share| shown[pixel].push(share));
         shown
     })
 }
 
-/// The area of a region in each pixel of the part of a band that contains it.
-fn area(region: &Region, band: Window) -> Option<(Window, Raster<f32>)> {
-    let near = region.areas.iter().filter_map(|polygon| Some((Window::around(polygon)?.common(band)?, polygon)));
-    let (windows, polygons): (Vec<Window>, Vec<Vec<Point>>) = near.map(|(own, polygon)| (own, polygon.clone())).unzip();
-    let window = windows.into_iter().reduce(Window::united)?;
-    let draw = |polygons: Vec<Vec<Point>>| Shape::new(&[polygons]).draw(window, &mut || true);
-    let mut own = draw(polygons)?;
-    if !region.holes.is_empty() {
-        let holes = draw(region.holes.clone())?;
+/// The paint of a window alone: linear light multiplied by alpha, and alpha. The value of a pixel does not depend on the window. Calls
+/// `go_on` for each row of each region, and returns `None` if it returns false.
+pub fn paint_in(regions: &[Region], window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<[f32; 4]>> {
+    let colours = lights(regions);
+    let mut picture = Raster::new(window.width(), window.height(), [0.0; 4]);
+    let pixels = picture.data_mut();
+    each_share(regions, window, go_on, |pixel, share| add(&mut pixels[pixel], colours[share.part], share.coverage))?;
+    Some(picture)
+}
+
+/// A rectangle of whole pixels that contains all regions; `None` if there are none.
+pub fn bounds(regions: &[Region]) -> Option<Window> {
+    regions.iter().flat_map(|region| &region.areas).filter_map(|area| Window::around(area)).reduce(Window::united)
+}
+
+/// Calls `give` with the index of each pixel of a band in which a region shows, and with its share, for one region after the
+/// other from the front to the back. `None` if `go_on` returns false.
+fn each_share(
+    regions: &[Region],
+    band: Window,
+    go_on: &mut dyn FnMut() -> bool,
+    mut give: impl FnMut(usize, Share),
+) -> Option<()> {
+    let mut left = vec![1.0f32; band.width() * band.height()];
+    for (part, region) in regions.iter().enumerate().rev() {
+        if !go_on() {
+            return None;
+        }
+        let Some((window, polygons)) = near(region, band) else { continue };
+        let own = area(polygons, &region.holes, window, go_on)?;
+        for (row, y) in (window.top..window.bottom).enumerate() {
+            let first = (y - band.top) as usize * band.width() + (window.left - band.left) as usize;
+            for (x, own) in own.row(row).iter().enumerate() {
+                let coverage = (region.opacity * own).min(left[first + x]);
+                if coverage >= LEAST {
+                    left[first + x] -= coverage;
+                    give(first + x, Share { part, coverage });
+                }
+            }
+        }
+    }
+    Some(())
+}
+
+/// The polygons of a region in the rows of a band, and the part of the band that contains them. All polygons of a row count,
+/// also those beside the band: each cuts the row where it has a corner, and a pixel must not depend on the band.
+fn near(region: &Region, band: Window) -> Option<(Window, Vec<Vec<Point>>)> {
+    let in_rows = |own: &Window| own.top < band.bottom && own.bottom > band.top;
+    let near = region.areas.iter().filter_map(|polygon| Some((Window::around(polygon).filter(in_rows)?, polygon)));
+    let (windows, polygons): (Vec<Window>, Vec<&Vec<Point>>) = near.unzip();
+    let window = windows.into_iter().filter_map(|own| own.common(band)).reduce(Window::united)?;
+    Some((window, polygons.into_iter().cloned().collect()))
+}
+
+/// The area of polygons without holes in each pixel of a window. `None` if `go_on` returns false.
+fn area(
+    polygons: Vec<Vec<Point>>,
+    holes: &[Vec<Point>],
+    window: Window,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Option<Raster<f32>> {
+    let mut own = Shape::new(&[polygons]).draw(window, go_on)?;
+    if !holes.is_empty() {
+        let holes = Shape::new(&[holes.to_vec()]).draw(window, go_on)?;
         own.data_mut().iter_mut().zip(holes.data()).for_each(|(own, hole)| *own = (*own - hole).max(0.0));
     }
-    Some((window, own))
+    Some(own)
+}
+
+/// The colour of each region as linear light.
+fn lights(regions: &[Region]) -> Vec<[f32; 3]> {
+    regions.iter().map(|region| region.colour.map(colour::decode)).collect()
+}
+
+/// Adds a share of a colour to a pixel.
+fn add(sum: &mut [f32; 4], [r, g, b]: [f32; 3], coverage: f32) {
+    for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
+        *sum += coverage * value;
+    }
 }
 
 /// The paint alone: linear light multiplied by alpha, and alpha.
 pub fn paint(regions: &[Region], shares: &Visible) -> Raster<[f32; 4]> {
-    let colours: Vec<[f32; 3]> = regions.iter().map(|region| region.colour.map(colour::decode)).collect();
+    let colours = lights(regions);
     let mut pixels = shares.pixels();
     Raster::from_fn(shares.width(), shares.height(), |_, _| {
         let mut sum = [0.0; 4];
-        for share in pixels.next().unwrap_or(&[]) {
-            let [r, g, b] = colours[share.part];
-            for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
-                *sum += share.coverage * value;
-            }
-        }
+        let shown = pixels.next().unwrap_or(&[]);
+        shown.iter().for_each(|share| add(&mut sum, colours[share.part], share.coverage));
         sum
     })
 }
 
 /// A drawing over its paint, both as linear light multiplied by alpha, and alpha.
 pub fn painted(drawing: &Raster<[f32; 4]>, paint: &Raster<[f32; 4]>) -> Raster<[f32; 4]> {
-    Raster::from_fn(drawing.width(), drawing.height(), |x, y| {
-        let (over, below) = (drawing.get(x, y), paint.get(x, y));
-        let (a, b) = (over[3], below[3]);
-        let mixed = |k: usize| over[k] * (1.0 - b) + below[k] * (1.0 - a) + over[k] * below[k];
-        [mixed(0), mixed(1), mixed(2), a + b - a * b]
-    })
+    Raster::from_fn(drawing.width(), drawing.height(), |x, y| multiplied(drawing.get(x, y), paint.get(x, y)))
+}
+
+/// A pixel of a drawing over one of its paint, as in [`painted`].
+pub fn multiplied(over: [f32; 4], below: [f32; 4]) -> [f32; 4] {
+    let (a, b) = (over[3], below[3]);
+    let mixed = |k: usize| over[k] * (1.0 - b) + below[k] * (1.0 - a) + over[k] * below[k];
+    // Opaque with an opaque drawing, to the last bit.
+    [mixed(0), mixed(1), mixed(2), a + b * (1.0 - a)]
 }
 
 /// Encodes the paint alone. In OpenEXR Cryptomatte layers of the regions accompany it.
@@ -189,6 +251,32 @@ mod tests {
     }
 
     #[test]
+    fn a_painting_that_is_stopped_ends() {
+        let regions = vec![region(rectangle(0.0, 0.0, 30.0, 30.0), RED); 3];
+        let window = Window { left: 0, top: 0, right: 30, bottom: 30 };
+        for stop in [0, 1, 17, 60] {
+            let mut calls = 0;
+            let mut go_on = || {
+                calls += 1;
+                calls <= stop
+            };
+            assert_eq!(paint_in(&regions, window, &mut go_on), None);
+            assert_eq!(calls, stop + 1, "it ends at once");
+        }
+    }
+
+    #[test]
+    fn moved_regions_take_their_holes_with_them() {
+        let mut own = region(rectangle(0.0, 0.0, 4.0, 4.0), RED);
+        own.holes = vec![rectangle(1.0, 1.0, 2.0, 3.0)];
+        let moved = own.moved(|p| p * 2.0 + Point::new(1.0, 0.0));
+        assert_eq!(moved.areas, [rectangle(1.0, 0.0, 9.0, 8.0)]);
+        assert_eq!(moved.holes, [rectangle(3.0, 2.0, 5.0, 6.0)]);
+        assert_eq!(bounds(&[moved]), Some(Window { left: 1, top: 0, right: 9, bottom: 8 }));
+        assert_eq!(bounds(&[]), None);
+    }
+
+    #[test]
     fn ink_darkens_paint_and_paper_leaves_it() {
         let over = |drawing: [f32; 4], paint: [f32; 4]| {
             painted(&Raster::new(1, 1, drawing), &Raster::new(1, 1, paint)).get(0, 0)
@@ -204,6 +292,33 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn a_window_is_a_piece_of_the_whole_to_the_last_bit(
+            places in prop::collection::vec((-9.0f64..50.0, -9.0f64..150.0, 0.2f64..5.0), 3..24),
+            (left, top, width, height) in (-6i64..30, -6i64..100, 1i64..20, 1i64..80),
+        ) {
+            let strokes: Vec<Region> = places.chunks(4).zip(1..).map(|(run, n)| {
+                let points: Vec<Point> = run.iter().map(|&(x, y, _)| Point::new(x, y)).collect();
+                let radii: Vec<f64> = run.iter().map(|&(.., radius)| radius).collect();
+                let areas = crate::stroke::areas(&points, &radii, false);
+                let holes = vec![rectangle(points[0].x, points[0].y, points[0].x + 3.3, points[0].y + 2.7)];
+                Region { areas, holes, opacity: 1.0 / n as f32, ..region(Vec::new(), [0.3, 0.1 * n as f32, 0.9]) }
+            }).collect();
+            let whole = picture(&strokes, 40, 140);
+            let window = Window { left, top, right: left + width, bottom: top + height };
+            let piece = paint_in(&strokes, window, &mut || true).unwrap();
+            for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
+                if (0..40).contains(&(left + x)) && (0..140).contains(&(top + y)) {
+                    let wanted = whole.get((left + x) as usize, (top + y) as usize);
+                    prop_assert_eq!(piece.get(x as usize, y as usize), wanted);
+                } else if bounds(&strokes).is_none_or(|all| all.common(Window {
+                    left: left + x, top: top + y, right: left + x + 1, bottom: top + y + 1,
+                }).is_none()) {
+                    prop_assert_eq!(piece.get(x as usize, y as usize), [0.0; 4]);
+                }
+            }
+        }
+
         #[test]
         fn a_drawing_cut_into_regions_is_painted_whole(
             cuts in prop::collection::vec((0.0f64..9.0, 0.0f64..70.0), 1..5), slant in -3.0f64..3.0,

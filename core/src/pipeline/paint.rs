@@ -7,120 +7,107 @@ use crate::geometry::Point;
 use crate::image::colour;
 use crate::project::Document;
 use crate::project::fills::FilledRegion;
-use crate::render::paint::{Region, paint, paint_picture, painted, shares};
-use crate::render::{EncodeError, Format, stroke};
+use crate::render::paint::{Region, paint, painted, shares};
+use crate::render::stroke;
 use crate::scene::{Colour, Footage, FrameNumber, Raster};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// Number of frames that a message names.
 const NAMED: usize = 5;
 
-/// What the pictures of a job show of painted regions and strokes. Nothing for pictures of something else.
-#[derive(Default)]
-pub(super) struct Shown {
+/// The painted regions and strokes of a document on each frame: what a cel is made of.
+#[derive(Debug, Default)]
+pub struct Cels {
     regions: BTreeMap<FrameNumber, Vec<FilledRegion>>,
     strokes: BTreeMap<FrameNumber, Vec<Seen>>,
     /// Width of a stroke without widths, in pixels of the footage.
     plain: f64,
-    /// Pixels of the picture for each pixel of the footage.
-    scale: f64,
 }
 
-impl Shown {
-    /// Reads what the pictures of a job show.
-    ///
-    /// # Errors
-    ///
-    /// [`PipelineError::Field`] if the document has nothing of it, or it cannot be read; [`PipelineError::Option`] if the job
-    /// names parts, which regions and strokes do not have.
-    pub fn of(document: &Document, job: &RenderJob) -> Result<Self, PipelineError> {
-        let (regions, strokes) = (job.picture.shows_regions(), job.picture.shows_strokes());
-        let mut shown = Self { plain: strokes::plain(document), scale: job.scale, ..Self::default() };
-        if let Some(name) = job.parts.as_ref().and_then(|names| names.first()).filter(|_| regions || strokes) {
-            let reason = format!("found {name:?}, expected none: painted regions and strokes belong to no part");
-            return Err(PipelineError::option("parts", reason));
-        }
-        let missing =
-            |field: &str, expected: &str| PipelineError::Field(format!("{field}: found none, expected {expected}"));
-        if regions {
-            shown.regions = regions_of(document)?;
-            if shown.regions.is_empty() {
-                return Err(missing("filled", "the painted regions that `rototoon fill` writes"));
-            }
-        }
-        if strokes {
-            shown.strokes = strokes::strokes(document)?;
-            if shown.strokes.is_empty() {
-                return Err(missing("traced", "the strokes that `rototoon trace` writes, or drawings"));
-            }
-        }
-        Ok(shown)
-    }
-
-    /// The painted regions of a document alone, in pixels of the footage.
+impl Cels {
+    /// The painted regions of a document alone.
     ///
     /// # Errors
     ///
     /// [`PipelineError::Field`] if they cannot be read.
     pub fn regions(document: &Document) -> Result<Self, PipelineError> {
-        Ok(Self { regions: regions_of(document)?, scale: 1.0, ..Self::default() })
+        let filled = document.filled().map_err(|error| fill::field(&error))?;
+        let regions = filled.into_iter().map(|drawing| (drawing.frame, drawing.regions)).collect();
+        Ok(Self { regions, ..Self::default() })
+    }
+
+    /// The strokes of a document alone: traced, else of in-betweens, else drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`PipelineError::Field`] if they cannot be read.
+    pub fn strokes(document: &Document) -> Result<Self, PipelineError> {
+        let (strokes, plain) = (strokes::strokes(document)?, strokes::plain(document));
+        Ok(Self { strokes, plain, ..Self::default() })
+    }
+
+    /// What the pictures of a job show. Nothing for pictures of something else.
+    ///
+    /// # Errors
+    ///
+    /// [`PipelineError::Field`] if the document has nothing of it, or it cannot be read; [`PipelineError::Option`] if the job
+    /// names parts, which regions and strokes do not have.
+    pub(super) fn of(document: &Document, job: &RenderJob) -> Result<Self, PipelineError> {
+        let (regions, strokes) = (job.picture.shows_regions(), job.picture.shows_strokes());
+        if let Some(name) = job.parts.as_ref().and_then(|names| names.first()).filter(|_| regions || strokes) {
+            let reason = format!("found {name:?}, expected none: painted regions and strokes belong to no part");
+            return Err(PipelineError::option("parts", reason));
+        }
+        let found = |read: Self, field: &str, expected: &str| match read.is_empty() {
+            true => Err(PipelineError::Field(format!("{field}: found none, expected {expected}"))),
+            false => Ok(read),
+        };
+        let mut cels = Self::default();
+        if regions {
+            cels = found(Self::regions(document)?, "filled", "the painted regions that `rototoon fill` writes")?;
+        }
+        if strokes {
+            let expected = "the strokes that `rototoon trace` writes, or drawings";
+            cels = Self { regions: cels.regions, ..found(Self::strokes(document)?, "traced", expected)? };
+        }
+        Ok(cels)
+    }
+
+    /// Whether no frame has an entry.
+    pub fn is_empty(&self) -> bool {
+        self.regions.is_empty() && self.strokes.is_empty()
+    }
+
+    /// The names of all regions and strokes, as in [`Region::name`].
+    pub fn names(&self) -> BTreeSet<String> {
+        let regions: BTreeSet<usize> = self.regions.values().flatten().map(|region| region.track).collect();
+        let strokes: BTreeSet<strokes::Id> = self.strokes.values().flatten().map(|seen| seen.id).collect();
+        regions.into_iter().map(named).chain(strokes.iter().map(strokes::Id::to_string)).collect()
     }
 
     /// The frames with painted regions, each with the least confidence of one.
-    pub fn least_confidence(&self) -> impl Iterator<Item = (FrameNumber, f64)> + '_ {
+    pub(super) fn least_confidence(&self) -> impl Iterator<Item = (FrameNumber, f64)> + '_ {
         let least = |regions: &[FilledRegion]| regions.iter().map(|region| region.confidence).fold(1.0, f64::min);
         self.regions.iter().map(move |(frame, regions)| (*frame, least(regions)))
     }
 
-    /// What is shown on a frame, from back to front: painted regions, solid shapes, lines.
-    fn on(&self, frame: FrameNumber) -> Vec<Region> {
-        let regions = self.regions.get(&frame).into_iter().flatten().map(|region| self.region(region));
-        regions.chain(self.strokes.get(&frame).into_iter().flatten().map(|seen| self.stroke(seen))).collect()
-    }
-
-    fn region(&self, FilledRegion { outline, holes, colour, track, .. }: &FilledRegion) -> Region {
-        Region {
-            name: format!("region {track}"),
-            areas: vec![self.scaled(outline)],
-            holes: holes.iter().map(|hole| self.scaled(hole)).collect(),
-            colour: *colour,
-            opacity: 1.0,
-        }
-    }
-
-    fn stroke(&self, seen: &Seen) -> Region {
-        let own = &seen.stroke;
-        let points = self.scaled(&own.points);
-        let plain = vec![self.plain; points.len()];
-        let widths = if own.widths.is_empty() { &plain } else { &own.widths };
-        let radii: Vec<f64> = widths.iter().map(|width| 0.5 * self.scale * width).collect();
-        let mut areas: Vec<Vec<Point>> =
-            if seen.is_lined() { stroke::areas(&points, &radii, own.closed) } else { Vec::new() };
-        if own.fill {
-            areas.push(points);
-        }
-        let (name, colour) = (seen.id.to_string(), own.colour.unwrap_or_default());
-        Region { name, areas, holes: Vec::new(), colour, opacity: seen.opacity as f32 }
-    }
-
-    fn scaled(&self, points: &[Point]) -> Vec<Point> {
-        points.iter().map(|p| self.scale * *p).collect()
-    }
-
-    /// What is shown on a frame, on nothing, as bytes of a file of `size`.
-    pub fn alone(&self, frame: FrameNumber, size: &Footage, format: Format) -> Result<Vec<u8>, EncodeError> {
-        paint_picture(&self.on(frame), size.width, size.height, format)
+    /// What is shown on a frame, from back to front: painted regions, solid shapes, lines. `scale` is the number of pixels of
+    /// the picture for each pixel of the footage. The origin is that of the footage.
+    pub fn on(&self, frame: FrameNumber, scale: f64) -> Vec<Region> {
+        let regions = self.regions.get(&frame).into_iter().flatten().map(|own| region(own, scale));
+        let strokes = self.strokes.get(&frame).into_iter().flatten();
+        regions.chain(strokes.map(|seen| stroke(seen, self.plain, scale))).collect()
     }
 
     /// The drawing of a frame over what is shown there.
-    pub fn under(&self, frame: FrameNumber, drawing: &Raster<[f32; 4]>) -> Raster<[f32; 4]> {
-        let own = self.on(frame);
+    pub(super) fn under(&self, frame: FrameNumber, drawing: &Raster<[f32; 4]>) -> Raster<[f32; 4]> {
+        let own = self.on(frame, 1.0);
         painted(drawing, &paint(&own, &shares(&own, drawing.width(), drawing.height())))
     }
 
     /// The picture of a frame, which hides what is behind it, over what is shown there; `None` if that is nothing.
-    pub fn under_picture(&self, frame: FrameNumber, picture: &Raster<Colour>) -> Option<Raster<Colour>> {
+    pub(super) fn under_picture(&self, frame: FrameNumber, picture: &Raster<Colour>) -> Option<Raster<Colour>> {
         self.regions.get(&frame).filter(|regions| !regions.is_empty())?;
         let layer = Raster::from_fn(picture.width(), picture.height(), |x, y| {
             let [r, g, b] = picture.get(x, y).map(colour::decode);
@@ -134,10 +121,39 @@ impl Shown {
     }
 }
 
-/// The painted regions of a document by frame.
-fn regions_of(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<FilledRegion>>, PipelineError> {
-    let filled = document.filled().map_err(|error| fill::field(&error))?;
-    Ok(filled.into_iter().map(|drawing| (drawing.frame, drawing.regions)).collect())
+/// The name of a painted region by its number.
+fn named(track: usize) -> String {
+    format!("region {track}")
+}
+
+fn region(FilledRegion { outline, holes, colour, track, .. }: &FilledRegion, scale: f64) -> Region {
+    Region {
+        name: named(*track),
+        areas: vec![scaled(outline, scale)],
+        holes: holes.iter().map(|hole| scaled(hole, scale)).collect(),
+        colour: *colour,
+        opacity: 1.0,
+    }
+}
+
+/// A stroke as a region. `plain` is the width of one without widths.
+fn stroke(seen: &Seen, plain: f64, scale: f64) -> Region {
+    let own = &seen.stroke;
+    let points = scaled(&own.points, scale);
+    let plain = vec![plain; points.len()];
+    let widths = if own.widths.is_empty() { &plain } else { &own.widths };
+    let radii: Vec<f64> = widths.iter().map(|width| 0.5 * scale * width).collect();
+    let mut areas: Vec<Vec<Point>> =
+        if seen.is_lined() { stroke::areas(&points, &radii, own.closed) } else { Vec::new() };
+    if own.fill {
+        areas.push(points);
+    }
+    let (name, colour) = (seen.id.to_string(), own.colour.unwrap_or_default());
+    Region { name, areas, holes: Vec::new(), colour, opacity: seen.opacity as f32 }
+}
+
+fn scaled(points: &[Point], scale: f64) -> Vec<Point> {
+    points.iter().map(|p| scale * *p).collect()
 }
 
 /// The footage with the size of a job's pictures.

@@ -1,6 +1,6 @@
 //! Renders pictures of a document into files.
 
-use super::paint::{Shown, sized};
+use super::paint::{Cels, sized};
 use super::picture::{Picture, RenderJob};
 use super::{PipelineError, frames, frames_of, memory};
 use crate::pictures::Sequence;
@@ -19,7 +19,7 @@ struct Rendering {
     size: Footage,
     /// Width of the footage's pixels divided by their height.
     aspect: f32,
-    shown: Shown,
+    cels: Cels,
 }
 
 /// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
@@ -72,10 +72,13 @@ fn picture(
         Picture::Layers => render::matte_layers(&document.scene, frame, parts),
         Picture::Parts => render::matte_parts(&document.scene, frame, parts),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
-        Picture::Paint | Picture::Lines | Picture::Cel => plan.shown.alone(frame, &plan.size, plan.format),
+        Picture::Paint | Picture::Lines | Picture::Cel => {
+            let shown = plan.cels.on(frame, job.scale);
+            render::paint_picture(&shown, plan.size.width, plan.size.height, plan.format)
+        }
         Picture::Painted => {
             let drawing = sequence.layer(frame)?;
-            render::encode::layer(&plan.shown.under(frame, &drawing), plan.format)
+            render::encode::layer(&plan.cels.under(frame, &drawing), plan.format)
         }
         Picture::Overlay(options) => {
             let below = sequence.picture(frame)?;
@@ -103,14 +106,14 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
         inputs.check(path).map_err(|error| PipelineError::Request(format!("frame {frame}: {error}")))?;
     }
     // First, because regions and strokes have no parts to be chosen.
-    let shown = Shown::of(document, job)?;
+    let cels = Cels::of(document, job)?;
     Ok(Rendering {
         frames,
         parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
         format,
         size: sized(footage, job)?,
         aspect: sequence.pixel_aspect(first),
-        shown,
+        cels,
     })
 }
 

@@ -5,7 +5,7 @@
 //! the frame, and one that is in doubt makes the frame a doubtful one.
 
 use super::fill::DOUBT;
-use super::paint::Shown;
+use super::paint::Cels;
 use super::{PipelineError, strokes};
 use crate::project::Document;
 use crate::scene::{Colour, palette};
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 pub(super) struct Contents {
     /// The document's parts, and its strokes as parts.
     pub scene: Scene,
-    regions: Shown,
+    regions: Cels,
 }
 
 impl Contents {
@@ -28,7 +28,7 @@ impl Contents {
     pub fn of(document: &Document) -> Result<Self, PipelineError> {
         let mut scene = document.scene.clone();
         scene.parts.extend(parts(document)?);
-        Ok(Self { scene, regions: Shown::regions(document)? })
+        Ok(Self { scene, regions: Cels::regions(document)? })
     }
 
     /// The picture of a frame over its painted regions.

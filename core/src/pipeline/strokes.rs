@@ -36,6 +36,7 @@ impl fmt::Display for Id {
 }
 
 /// A stroke on a frame.
+#[derive(Clone, Debug)]
 pub(super) struct Seen {
     pub id: Id,
     pub stroke: TracedStroke,

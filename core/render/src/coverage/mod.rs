@@ -90,7 +90,7 @@ impl Window {
     }
 
     /// The pixels that both windows have; `None` if there are none.
-    pub(super) fn common(self, other: Self) -> Option<Self> {
+    pub fn common(self, other: Self) -> Option<Self> {
         let (left, top) = (self.left.max(other.left), self.top.max(other.top));
         let (right, bottom) = (self.right.min(other.right), self.bottom.min(other.bottom));
         (left < right && top < bottom).then_some(Self { left, top, right, bottom })
