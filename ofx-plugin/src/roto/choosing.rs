@@ -25,7 +25,7 @@ pub fn chosen(effect: &Effect) -> Result<(), Failure> {
 pub fn step(effect: &Effect, forward: bool) -> Result<(), Failure> {
     let parameters = effect.parameters()?;
     let document = instance(effect)?.document(&parameters)?;
-    let names = document.as_deref().map(names).unwrap_or_default();
+    let names = document.as_deref().map(|document| names(document)).unwrap_or_default();
     let part = parameters.text(c"part")?;
     let place = names.iter().position(|name| *name == part.trim());
     let next = match (place, forward) {

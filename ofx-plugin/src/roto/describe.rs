@@ -13,7 +13,7 @@ use rototoon::scene::effects::ROTO;
 
 const ABOUT: About = About {
     label: "Rototoon Roto",
-    description: "Draws contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines or ids.",
+    description: "Draws contours of drawn characters, tracked by Rototoon, as cutouts, mattes, lines or ids, and painted and traced drawings.",
     tiles: true,
     mask: true,
 };

@@ -3,6 +3,7 @@
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::parts::selected;
 use super::settings::Settings;
+use super::shared::Loaded;
 use super::state::State;
 use super::{follow, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
@@ -148,7 +149,7 @@ pub fn page_changed(effect: &Effect, id: &str) -> Result<(), Failure> {
 
 /// What the edit buttons work on.
 struct Bench {
-    document: Arc<Document>,
+    document: Arc<Loaded>,
     frame: FrameNumber,
     /// The parts that may be changed, the farthest first.
     parts: Vec<usize>,
@@ -163,7 +164,7 @@ impl Bench {
         let (instance, parameters) = (instance(effect)?, effect.parameters()?);
         let document = match instance.document(&parameters)? {
             Some(document) => document,
-            None => Arc::new(fresh::document(effect)?),
+            None => Arc::new(Loaded::new(fresh::document(effect)?)),
         };
         let state = instance.state(&parameters)?;
         let settings = Settings::read(&parameters, time, &state)?;

@@ -2,9 +2,10 @@
 
 use super::edit::Editor;
 use super::film::Film;
+use super::shared::{self, Loaded};
 use super::stale::Stale;
 use super::state::State;
-use super::{shared, stored};
+use super::stored;
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::project::Document;
 use rototoon::scene::Part;
@@ -42,7 +43,7 @@ pub struct Instance {
 #[derive(Clone, Debug)]
 struct Read {
     origin: Origin,
-    result: Result<Arc<Document>, String>,
+    result: Result<Arc<Loaded>, String>,
 }
 
 /// The origin of a document. Equal origins give equal documents.
@@ -56,7 +57,7 @@ pub enum Origin {
 
 impl Instance {
     /// The document stored in the composition, or else the project's file. `None` if there is neither.
-    pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Document>>, Failure> {
+    pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
         let text = parameters.text(c"document")?;
         let origin = if text.trim().is_empty() {
             let path = parameters.text(c"project")?;
@@ -86,7 +87,7 @@ impl Instance {
     }
 
     /// The document stored in the composition; `None` if there is none.
-    pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Document>>, Failure> {
+    pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
         if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
     }
 

@@ -68,7 +68,7 @@ pub fn refresh(effect: &Effect) {
 fn menu(effect: &Effect) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters).ok().flatten();
-    let names = document.as_deref().map(names).unwrap_or_default();
+    let names = document.as_deref().map(|document| names(document)).unwrap_or_default();
     if instance.replace_menu(&names) {
         let properties = parameters.properties(MENU)?;
         properties.reset(kOfxParamPropChoiceOption)?;

@@ -8,6 +8,7 @@ use super::state::State;
 use crate::encoding::Encoding;
 use crate::ofx::{Failure, Parameters};
 use crate::pixels::{Format, Pixel};
+use rototoon::render::paint::multiplied;
 
 /// How a picture and the source become the output.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +33,8 @@ impl Mixing {
 
     /// Whether the source's pixels are needed after the picture is drawn.
     pub fn needs_source(&self) -> bool {
-        self.output == Output::Matte && (self.channels != Channels::All || self.alpha != SourceAlpha::Ignore)
+        let beside = self.channels != Channels::All || self.alpha != SourceAlpha::Ignore;
+        self.output == Output::Painted || self.output == Output::Matte && beside
     }
 
     /// Whether values are written as they are, neither multiplied nor divided by alpha.
@@ -47,6 +49,9 @@ impl Mixing {
             for (pixel, limit) in pixels.iter_mut().zip(limit) {
                 pixel.iter_mut().for_each(|value| *value *= limit);
             }
+        }
+        if !self.output.shows_parts() {
+            return show_paint(pixels, below, &Encoding::of(format));
         }
         if let Some(below) = below {
             for (pixel, below) in pixels.iter_mut().zip(below) {
@@ -75,6 +80,18 @@ impl Mixing {
             pixel[..3].iter_mut().for_each(|colour| *colour *= value);
         }
         pixel
+    }
+}
+
+/// Turns paint, which is linear light times alpha, into pixels of the image. A drawing lies over it, as in the command line.
+fn show_paint(pixels: &mut [Pixel], drawing: Option<&[Pixel]>, encoding: &Encoding) {
+    for (at, pixel) in pixels.iter_mut().enumerate() {
+        *pixel = match drawing.map(|drawing| drawing[at]) {
+            // The drawing alone stays as it is, to the last bit.
+            Some(drawing) if pixel[3] <= 0.0 => drawing,
+            Some(drawing) => encoding.of_light(multiplied(encoding.to_light(drawing), *pixel)),
+            None => encoding.of_light(*pixel),
+        };
     }
 }
 

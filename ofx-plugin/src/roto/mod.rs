@@ -1,4 +1,5 @@
-//! The effect `org.rototoon.Roto`: draws the parts of a project document as cutout, matte, overlay or ids.
+//! The effect `org.rototoon.Roto`: draws the parts of a project document as cutout, matte, overlay or ids, and its painted
+//! regions and strokes.
 //!
 //! - [`describe`]: describes clips and parameters
 //! - [`settings`]: the parameters' values at a time
@@ -9,7 +10,7 @@
 //! - [`picture`]: draws the parts
 //! - [`regions`]: the regions that are drawn, and the regions of the source that they need
 //! - [`render`]: renders the pixels of a window
-//! - [`outlines`]: draws outlines as lines
+//! - [`outlines`]: draws outlines as lines; [`cels`]: painted regions and strokes
 //! - [`mixing`]: what a picture does with the source
 //! - [`measured`]: the scale at which a host really gives its pixels
 //! - [`shared`]: documents that instances share
@@ -30,6 +31,7 @@
 
 pub mod buttons;
 pub mod canvas;
+pub mod cels;
 pub mod choosing;
 pub mod describe;
 pub mod edit;

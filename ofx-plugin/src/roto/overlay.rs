@@ -8,6 +8,7 @@ use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
 use super::parts::selected;
 use super::placement::Placement;
 use super::settings::{self, Settings};
+use super::shared::Loaded;
 use super::stale::Stale;
 use super::state::State;
 use super::{canvas, edits, fresh, instance};
@@ -15,7 +16,6 @@ use crate::ofx::Failure;
 use crate::ofx::interact::{Event, View};
 use openfx::sys::image_effect_v1::key_syms;
 use rototoon::geometry::Point;
-use rototoon::project::Document;
 use rototoon::scene::{Colour, FrameNumber, Part};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// What the viewer shows.
 pub struct Shown {
     /// The document; one without parts if the composition has none.
-    pub document: Arc<Document>,
+    pub document: Arc<Loaded>,
     /// The shown parts, the farthest first.
     pub parts: Vec<usize>,
     /// Those of them that the pen may change.
@@ -52,7 +52,7 @@ impl Shown {
         let quiet = |_| Failure::Default;
         let document = match instance.document(&parameters).map_err(quiet)? {
             Some(document) => document,
-            None => Arc::new(fresh::document(&view.effect).map_err(quiet)?),
+            None => Arc::new(Loaded::new(fresh::document(&view.effect).map_err(quiet)?)),
         };
         let state = instance.state(&parameters).map_err(quiet)?;
         let settings = Settings::read(&parameters, view.time, &state)?;

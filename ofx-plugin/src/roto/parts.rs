@@ -5,7 +5,7 @@ use rototoon::scene::Part;
 /// The indices of the parts that a list of names selects, in the document's order, and the names that select no part.
 /// Names are separated by commas, and `*` matches any text. An empty list selects all parts.
 pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>) {
-    let patterns: Vec<&str> = names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
+    let patterns = patterns(names);
     if patterns.is_empty() {
         return ((0..parts.len()).collect(), Vec::new());
     }
@@ -15,8 +15,13 @@ pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>
     (indices, missing.copied().collect())
 }
 
+/// The names in a list with commas. They may have `*` for any text.
+pub fn patterns(names: &str) -> Vec<&str> {
+    names.split(',').map(str::trim).filter(|name| !name.is_empty()).collect()
+}
+
 /// Whether a name matches a pattern.
-fn matches(pattern: &str, name: &str) -> bool {
+pub fn matches(pattern: &str, name: &str) -> bool {
     let mut pieces = pattern.split('*');
     let first = pieces.next().unwrap_or_default();
     let Some(mut rest) = name.strip_prefix(first) else { return false };

@@ -1,4 +1,4 @@
-//! The picture of the parts at a time, in pixels with y turned down.
+//! The picture of the parts, or of painted regions and strokes, at a time, in pixels with y turned down.
 //!
 //! Mattes and cutouts are made of layers, from the farthest part to the nearest, and parts of equal depth in the document's
 //! order. Neighbouring parts without settings and feather of their own are one layer: their union is exact. In ids the parts share each
@@ -15,6 +15,7 @@ use rototoon::render::coverage::Window;
 use rototoon::render::mask::{Bounds, Mask};
 use rototoon::render::matte::feather_pieces;
 use rototoon::render::motion::{outline_at, shutter_from};
+use rototoon::render::paint::{self, Region, paint_in};
 use rototoon::render::visible::Stack;
 use rototoon::render::widths::Piece;
 use rototoon::scene::{Falloff, Part, Raster, Scene, palette};
@@ -34,14 +35,18 @@ pub enum Picture {
     SoftIds(Vec<(Mask, [f32; 3])>),
     /// Outlines over the previous pixels, the farthest first.
     Lines(Lines),
+    /// Painted regions and strokes from back to front. If the flag is set, the source lies over them.
+    Paint(Vec<Region>, bool),
 }
 
 impl Picture {
-    /// The picture of the parts with these indices. `selected` gives the indices of a list of names.
+    /// The picture of the parts with these indices, or of painted regions and strokes. `selected` gives the indices of a list
+    /// of names.
     pub fn new(
         scene: &Scene,
         parts: &[usize],
         selected: &dyn Fn(&str) -> Vec<usize>,
+        drawn: Vec<Region>,
         settings: &Settings,
         placement: &Placement,
     ) -> Self {
@@ -60,6 +65,8 @@ impl Picture {
             }
             Output::Ids => drawing.ids(&order),
             Output::Overlay => Self::Lines(drawing.lines(&order)),
+            Output::Painted => Self::Paint(drawn, true),
+            Output::Paint | Output::Lines | Output::Cel => Self::Paint(drawn, false),
         }
     }
 
@@ -68,6 +75,7 @@ impl Picture {
         match self {
             Self::Cutout(layers, true) => layers.misses(window),
             Self::Lines(lines) => lines.misses(window),
+            Self::Paint(drawn, true) => paint::bounds(drawn).and_then(|all| all.common(window)).is_none(),
             _ => false,
         }
     }
@@ -83,17 +91,12 @@ impl Picture {
                     all.reduce(|(a, all), (b, too)| ([a, b].into_iter().flatten().reduce(Bounds::united), all || too));
                 with(joined.unwrap_or_default(), *invert)
             }
-            Self::Ids(stacks) => {
-                let united = stacks.iter().filter_map(Stack::bounds).map(|window| Bounds {
-                    least: Point::new(window.left as f64, window.top as f64),
-                    most: Point::new(window.right as f64, window.bottom as f64),
-                });
-                (united.reduce(Bounds::united), false)
-            }
+            Self::Ids(stacks) => (stacks.iter().filter_map(Stack::bounds).map(around).reduce(Bounds::united), false),
             Self::SoftIds(layers) => {
                 (layers.iter().filter_map(|(mask, _)| mask.bounds()).reduce(Bounds::united), false)
             }
-            Self::Lines(_) => (None, true),
+            Self::Paint(drawn, false) => (paint::bounds(drawn).map(around), false),
+            Self::Lines(_) | Self::Paint(_, true) => (None, true),
         }
     }
 
@@ -105,7 +108,7 @@ impl Picture {
             Self::Cutout(layers, _) | Self::Matte(layers, _) => most(layers),
             Self::Mattes(mattes, _) => mattes.iter().map(most).max().unwrap_or(0),
             Self::SoftIds(layers) => layers.iter().map(|(mask, _)| mask.reach()).max().unwrap_or(0),
-            Self::Ids(_) | Self::Lines(_) => 0,
+            Self::Ids(_) | Self::Lines(_) | Self::Paint(..) => 0,
         }
     }
 
@@ -115,14 +118,15 @@ impl Picture {
         match self {
             Self::Cutout(layers, _) | Self::Matte(layers, _) => still(layers),
             Self::Mattes(mattes, _) => mattes.iter().all(still),
-            Self::Ids(_) | Self::SoftIds(_) | Self::Lines(_) => false,
+            Self::Ids(_) | Self::SoftIds(_) | Self::Lines(_) | Self::Paint(..) => false,
         }
     }
 
     /// Begins to draw a window over pixels. `below` writes a row of them, counted from the top. Calls `go_on` at each row,
     /// and returns `None` if it returns false.
     ///
-    /// A cutout multiplies the pixels. A matte is in all four channels, ids are display colours times their alpha.
+    /// A cutout multiplies the pixels. A matte is in all four channels, ids are display colours times their alpha, and paint is
+    /// linear light times its alpha.
     pub fn painting(
         &self,
         window: Window,
@@ -136,6 +140,7 @@ impl Picture {
                 let rows: Option<Vec<_>> = mattes.iter().map(|layers| layers.rows(window, go_on)).collect();
                 Painting::Mattes(rows?, *invert)
             }
+            Self::Paint(drawn, _) => Painting::Picture(paint_in(drawn, window, go_on)?),
             Self::Ids(_) | Self::SoftIds(_) | Self::Lines(_) => {
                 let mut pixels = Raster::new(window.width(), window.height(), CLEAR);
                 for y in 0..window.height() {
@@ -150,7 +155,7 @@ impl Picture {
     /// Draws what is not made of rows over the pixels of a window.
     fn paint(&self, window: Window, pixels: &mut Raster<Pixel>, go_on: &mut dyn FnMut() -> bool) -> Option<()> {
         match self {
-            Self::Cutout(..) | Self::Matte(..) | Self::Mattes(..) => {}
+            Self::Cutout(..) | Self::Matte(..) | Self::Mattes(..) | Self::Paint(..) => {}
             Self::Ids(stacks) => {
                 let share = 1.0 / stacks.len().max(1) as f32;
                 for stack in stacks {
@@ -329,6 +334,14 @@ impl Drawing<'_> {
         }
         let at = |t| shown.iter().filter_map(|part| self.outline(part, time, t)).collect();
         self.times().into_iter().map(at).collect()
+    }
+}
+
+/// A window as bounds.
+fn around(window: Window) -> Bounds {
+    Bounds {
+        least: Point::new(window.left as f64, window.top as f64),
+        most: Point::new(window.right as f64, window.bottom as f64),
     }
 }
 

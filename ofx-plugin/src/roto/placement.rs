@@ -63,6 +63,17 @@ impl Placement {
         p * self.factor + self.shift
     }
 
+    /// The number of pixels for each pixel of the footage, on the axis on which there are more.
+    pub fn magnification(&self) -> f64 {
+        self.factor.max_element()
+    }
+
+    /// Converts a point of the footage, times [`Self::magnification`], to pixels with y turned down. So widths at that scale are
+    /// squeezed with the footage where it is stretched.
+    pub fn place_magnified(&self, p: Point) -> Point {
+        p * (self.factor / self.magnification()) + self.shift
+    }
+
     /// Converts a point of the footage to canonical coordinates.
     pub fn shown(&self, p: Point) -> [f64; 2] {
         let placed = self.place(p) / self.scale;
@@ -126,6 +137,7 @@ mod tests {
         let bounds = mask::Bounds { least: half.place(Point::ZERO), most: half.place(Point::new(100.0, 50.0)) };
         assert_eq!(half.canonical(&bounds), region);
         let p = Point::new(13.0, 37.5);
+        assert_eq!((half.magnification(), half.place_magnified(p * 0.5)), (0.5, Point::new(0.25 * 13.0 + 2.5, 8.75)));
         assert_eq!(half.footage(half.shown(p)), p);
         assert_eq!(half.shown(Point::ZERO), [10.0, 70.0]);
         assert_eq!(half.place(Point::new(100.0, 50.0)), Point::new(27.5, -10.0));

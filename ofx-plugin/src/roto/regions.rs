@@ -1,12 +1,11 @@
 //! The regions that are drawn, the regions of the source that they need, and the format of the output.
 
-use super::instance;
 use super::parts::selected;
 use super::picture::Picture;
 use super::placement::{self, Placement, window};
-use super::settings::{Channels, Extent};
-use super::settings::{Output, Settings};
+use super::settings::{Channels, Extent, Output, Settings};
 use super::state::State;
+use super::{cels, instance};
 use crate::description::{MASK, SOURCE};
 use crate::ofx::effect::Region;
 use crate::ofx::entry::Action;
@@ -17,7 +16,7 @@ use openfx::sys::image_effect_v1::image_effect::{
     kOfxImageEffectPropRegionOfInterest, kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow,
     kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied, kOfxImageUnPreMultiplied,
 };
-use rototoon::scene::NoSuchPart;
+use rototoon::scene::{NoSuchPart, Part};
 
 /// The picture to draw at the time of an action.
 pub struct Drawn {
@@ -48,17 +47,27 @@ pub fn drawn(effect: &Effect, time: f64, render_scale: [f64; 2]) -> Result<Optio
             format!("the project is made for {width}x{height} pixels and is stretched over footage of another size");
         instance.note(effect, &text, false);
     }
-    let (parts, missing) = selected(&document.scene.parts, &settings.parts);
+    let (parts, drawn) = if settings.output.shows_parts() {
+        (shown_parts(effect, &document.scene.parts, &settings.parts)?, Vec::new())
+    } else {
+        (Vec::new(), cels::shown(effect, &document, &settings, &placement)?)
+    };
+    let named = |names: &str| selected(&document.scene.parts, names).0;
+    let picture = Picture::new(&document.scene, &parts, &named, drawn, &settings, &placement);
+    Ok(Some(Drawn { picture, placement, settings }))
+}
+
+/// The indices of the parts that a list names.
+fn shown_parts(effect: &Effect, parts: &[Part], names: &str) -> Result<Vec<usize>, Failure> {
+    let instance = instance(effect)?;
+    let (shown, missing) = selected(parts, names);
     for name in missing {
-        let missing = NoSuchPart::of(&document.scene.parts, name);
-        instance.note(effect, &format!("Parts: {missing}"), false);
+        instance.note(effect, &format!("Parts: {}", NoSuchPart::of(parts, name)), false);
     }
-    if !document.scene.parts.iter().any(|part| !part.tracks.is_empty()) {
+    if !parts.iter().any(|part| !part.tracks.is_empty()) {
         instance.note(effect, "the project is not tracked, so its parts are drawn on their key frames only", false);
     }
-    let named = |names: &str| selected(&document.scene.parts, names).0;
-    let picture = Picture::new(&document.scene, &parts, &named, &settings, &placement);
-    Ok(Some(Drawn { picture, placement, settings }))
+    Ok(shown)
 }
 
 fn time_and_scale(action: &Action) -> Result<(f64, [f64; 2]), Failure> {
@@ -142,7 +151,7 @@ pub fn frames_needed(action: &Action) -> Result<(), Failure> {
 
 /// Whether the output is the source where nothing is drawn.
 pub fn passes_source(effect: &Effect, time: f64) -> Result<bool, Failure> {
-    Ok(matches!(Output::of(&effect.parameters()?, time)?, Output::Cutout | Output::Overlay))
+    Ok(Output::of(&effect.parameters()?, time)?.passes_source())
 }
 
 /// Reports that the output is the source, if it is.
@@ -167,8 +176,8 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     action.output.set_double(kOfxPropTime, 0, time)
 }
 
-/// Sets the format of the output. A matte, ids and a cutout of an opaque source are premultiplied; other outputs are as the
-/// source. Frames are declared to vary, because they differ although no parameter is animated.
+/// Sets the format of the output. Mattes, ids, paint and strokes alone, and a cutout of an opaque source are premultiplied; other
+/// outputs are as the source. Frames are declared to vary, because they differ although no parameter is animated.
 pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let effect = &action.effect;
     let settings = Settings::read(&effect.parameters()?, 0.0, &State::default())?;
@@ -176,10 +185,12 @@ pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let source = effect.clip(SOURCE)?;
     let premultiplication = source.properties.text(kOfxImageEffectPropPreMultiplication, 0).unwrap_or_default();
     let opaque = !source.connected() || premultiplication.as_bytes() == kOfxImageOpaque.to_bytes();
+    // Where there is no source, its paint shows alone.
+    let transparent = output == Output::Cutout && opaque || output == Output::Painted && !source.connected();
     if output == Output::Matte && settings.channels == Channels::One(3) {
         let result = if settings.premultiply { kOfxImagePreMultiplied } else { kOfxImageUnPreMultiplied };
         action.output.set_name(kOfxImageEffectPropPreMultiplication, 0, result)?;
-    } else if !settings.shows_source() || output == Output::Cutout && opaque {
+    } else if !settings.shows_source() || transparent {
         action.output.set_name(kOfxImageEffectPropPreMultiplication, 0, kOfxImagePreMultiplied)?;
     }
     action.output.set_int(kOfxImageEffectFrameVarying, 0, 1)

@@ -21,6 +21,14 @@ pub enum Output {
     Ids,
     /// A matte of its own in each channel.
     Mattes,
+    /// The painted regions.
+    Paint,
+    /// The source over the painted regions.
+    Painted,
+    /// The strokes.
+    Lines,
+    /// The strokes over the painted regions.
+    Cel,
 }
 
 /// The channels that a matte is written to.
@@ -62,8 +70,32 @@ impl Output {
             2 => Self::Overlay,
             3 => Self::Ids,
             4 => Self::Mattes,
+            5 => Self::Paint,
+            6 => Self::Painted,
+            7 => Self::Lines,
+            8 => Self::Cel,
             _ => Self::Cutout,
         })
+    }
+
+    /// Whether it shows parts.
+    pub fn shows_parts(self) -> bool {
+        !self.shows_regions() && !self.shows_strokes()
+    }
+
+    /// Whether it shows painted regions.
+    pub fn shows_regions(self) -> bool {
+        matches!(self, Self::Paint | Self::Painted | Self::Cel)
+    }
+
+    /// Whether it shows strokes.
+    pub fn shows_strokes(self) -> bool {
+        matches!(self, Self::Lines | Self::Cel)
+    }
+
+    /// Whether the source shows where nothing is drawn.
+    pub fn passes_source(self) -> bool {
+        matches!(self, Self::Cutout | Self::Overlay | Self::Painted)
     }
 }
 
@@ -90,6 +122,8 @@ pub struct Settings {
     pub parts: String,
     /// Names of parts for red, green, blue and alpha.
     pub channel_parts: [String; 4],
+    /// Names of painted regions and strokes, as a list with commas.
+    pub drawn_names: String,
     /// Settings of parts by name. Other parts have the defaults.
     pub looks: BTreeMap<String, PartLook>,
     /// Whether snapped paths are used.
@@ -142,6 +176,7 @@ impl Settings {
             shown: !flag(c"limitFrames")? || (limits[0]..=limits[1]).contains(&time),
             parts: text(c"parts")?,
             channel_parts: [text(c"redParts")?, text(c"greenParts")?, text(c"blueParts")?, text(c"alphaParts")?],
+            drawn_names: text(c"drawnNames")?,
             looks: looks(parameters, time, state)?,
             curves: flag(c"useCurves")?,
             invert: flag(c"invert")?,
@@ -164,9 +199,8 @@ impl Settings {
     /// Whether the source is in the picture.
     pub fn shows_source(&self) -> bool {
         match self.output {
-            Output::Cutout | Output::Overlay => true,
             Output::Matte => self.channels != Channels::All || self.source_alpha != SourceAlpha::Ignore,
-            Output::Ids | Output::Mattes => false,
+            output => output.passes_source(),
         }
     }
 }

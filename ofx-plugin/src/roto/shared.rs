@@ -4,19 +4,54 @@
 //! once. A document is kept as long as an instance uses it.
 
 use super::instance::Origin;
+use rototoon::pipeline::Cels;
 use rototoon::project::Document;
 use std::collections::HashMap;
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::ops::Deref;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+
+/// A document, and what is painted and drawn in it, which is read when it is first shown.
+#[derive(Debug)]
+pub struct Loaded {
+    document: Document,
+    regions: OnceLock<Result<Cels, String>>,
+    strokes: OnceLock<Result<Cels, String>>,
+}
+
+impl Loaded {
+    /// A document of which nothing is shown yet.
+    pub fn new(document: Document) -> Self {
+        Self { document, regions: OnceLock::new(), strokes: OnceLock::new() }
+    }
+
+    /// The painted regions of all frames. The error is a message for the user.
+    pub fn regions(&self) -> Result<&Cels, &String> {
+        self.regions.get_or_init(|| Cels::regions(&self.document).map_err(|error| error.to_string())).as_ref()
+    }
+
+    /// The strokes of all frames. The error is a message for the user.
+    pub fn strokes(&self) -> Result<&Cels, &String> {
+        self.strokes.get_or_init(|| Cels::strokes(&self.document).map_err(|error| error.to_string())).as_ref()
+    }
+}
+
+impl Deref for Loaded {
+    type Target = Document;
+
+    fn deref(&self) -> &Document {
+        &self.document
+    }
+}
 
 /// Documents by the sum of their origin.
-type Known = HashMap<u64, (Origin, Weak<Document>)>;
+type Known = HashMap<u64, (Origin, Weak<Loaded>)>;
 
 static KNOWN: Mutex<Option<Known>> = Mutex::new(None);
 
 /// The document of an origin, which `read` reads unless an instance has it already.
-pub fn document(origin: &Origin, read: impl FnOnce() -> Result<Document, String>) -> Result<Arc<Document>, String> {
+pub fn document(origin: &Origin, read: impl FnOnce() -> Result<Document, String>) -> Result<Arc<Loaded>, String> {
     let mut hasher = DefaultHasher::new();
     origin.hash(&mut hasher);
     let sum = hasher.finish();
@@ -29,7 +64,7 @@ pub fn document(origin: &Origin, read: impl FnOnce() -> Result<Document, String>
         return Ok(found);
     }
     // The lock is open while the document is read, so that other instances need not wait.
-    let document = Arc::new(read()?);
+    let document = Arc::new(Loaded::new(read()?));
     let mut known = known();
     let known = known.get_or_insert_default();
     known.retain(|_, (_, document)| document.strong_count() > 0);

@@ -4,6 +4,7 @@ use super::instance::NO_SHAPES;
 use super::motion::Motion;
 use super::placement::Placement;
 use super::settings::{self, Settings};
+use super::shared::Loaded;
 use super::state::State;
 use super::{id_files, instance, motion, numbering};
 use crate::ofx::{Effect, Failure};
@@ -30,7 +31,7 @@ const PAIRS: Pairs = [
 /// Distance of the points of snapped paths in files, in pixels.
 const SPACING: f64 = 2.0;
 
-fn document(effect: &Effect) -> Result<Arc<Document>, Failure> {
+fn document(effect: &Effect) -> Result<Arc<Loaded>, Failure> {
     let document = instance(effect)?.document(&effect.parameters()?)?;
     document.ok_or_else(|| Failure::Told(NO_SHAPES.into()))
 }

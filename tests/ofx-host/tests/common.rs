@@ -4,6 +4,7 @@ use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::{Footage, Part, Scene};
 use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host, Picture};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tiny_skia::{Color, Paint, PathBuilder, Pixmap, Stroke, Transform};
@@ -33,6 +34,19 @@ pub const IDS: f64 = 3.0;
 
 /// Index of the output Mattes.
 pub const MATTES: f64 = 4.0;
+/// Index of the output Paint.
+pub const PAINT: f64 = 5.0;
+/// Index of the output Painted.
+pub const PAINTED: f64 = 6.0;
+/// Index of the output Lines.
+pub const LINES: f64 = 7.0;
+/// Index of the output Cel.
+pub const CEL: f64 = 8.0;
+
+/// All outputs.
+pub const OUTPUTS: [f64; 9] = [CUTOUT, MATTE, OVERLAY, IDS, MATTES, PAINT, PAINTED, LINES, CEL];
+/// Those that show painted regions and strokes.
+pub const CELS: [f64; 4] = [PAINT, PAINTED, LINES, CEL];
 
 /// A folder that contains only a bundle, because hosts scan everything in it. The bundle has the library of the bundle that
 /// the variable `ROTOTOON_OFX_BUNDLE` names, or else the library built with the tests. Optimised tests have a folder of their
@@ -100,6 +114,36 @@ pub fn scene() -> Scene {
 /// The scene as a document.
 pub fn document() -> String {
     Document::new(scene()).to_json()
+}
+
+/// The scene with painted regions on the frames 1 and 2, traced strokes on the same, a drawing on 3, and an in-between on 4.
+pub fn drawn_document() -> String {
+    let square = |x: f64, y: f64, side: f64| json!([[x, y], [x + side, y], [x + side, y + 0.8 * side], [x, y + side]]);
+    let region = |track: u32, outline: &Value, holes: &[Value], colour: [f32; 3]| json!({"track": track, "outline": outline, "holes": holes, "colour": colour});
+    let painted = |x: f64| {
+        let (wall, door) = (square(4.3 + x, 3.2, 40.0), square(12.1 + x, 9.7, 14.4));
+        let front = region(5, &square(30.0, 20.5 - x, 33.0), &[], [0.1, 0.2, 0.9]);
+        let wall = region(0, &wall, std::slice::from_ref(&door), [0.8, 0.4, 0.2]);
+        json!([wall, region(3, &door, &[], [1.0, 0.9, 0.1]), front])
+    };
+    let line = |x: f64| {
+        let points = [[2.0 + x, 40.2], [20.4, 8.8 + x], [44.0, 30.0], [61.0, 4.5]];
+        json!({"track": 0, "points": points, "closed": false, "widths": [1.0, 3.5, 2.25, 0.7], "colour": [0.1, 0.1, 0.1]})
+    };
+    let solid =
+        json!({"track": 2, "points": square(40.0, 33.0, 9.1), "closed": true, "fill": true, "colour": [0.3, 0.0, 0.3]});
+    let lined = json!({"track": 12, "points": square(14.0, 26.0, 6.2), "closed": true, "fill": true, "widths": [1.5, 1.5, 1.5, 1.5]});
+    let plain = json!({"points": [[5.5, 5.5], [50.0, 40.0], [60.0, 12.0]], "closed": false, "colour": [0.0, 0.4, 0.1]});
+    let between = json!({"track": 7, "points": [[5.5, 25.5], [50.0, 21.0]], "closed": false, "widths": [6.0, 3.0], "opacity": 0.5});
+    let mut all: Value = serde_json::from_str(&document()).unwrap();
+    let fields = json!({
+        "filled": [{"frame": 1, "regions": painted(0.0)}, {"frame": 2, "regions": painted(2.3)}],
+        "traced": [{"frame": 1, "strokes": [line(0.0), solid, lined]}, {"frame": 2, "strokes": [line(1.7)]}],
+        "drawings": [{"frame": 3, "strokes": [plain]}],
+        "in_betweens": [{"frame": 4, "strokes": [between]}],
+    });
+    all.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+    all.to_string()
 }
 
 /// The document that an instance stores in its parameter.

@@ -73,8 +73,10 @@ fn numbers_have_ranges_and_choices_their_order() {
         }
     }
     assert!(numbers > 100, "{numbers}");
-    let options = |id| (0..4).map(|k| effect.parameter_property(id, "OfxParamPropChoiceOption", k)).collect::<Vec<_>>();
-    assert_eq!(options("output"), ["Cutout", "Matte", "Overlay", "Ids"]);
+    let options = |id| (0..9).map(|k| effect.parameter_property(id, "OfxParamPropChoiceOption", k)).collect::<Vec<_>>();
+    // Compositions store the index. New outputs come last.
+    let outputs = ["Cutout", "Matte", "Overlay", "Ids", "Mattes", "Paint", "Painted", "Lines", "Cel"];
+    assert_eq!(options("output"), outputs);
     assert_eq!(options("preset")[..2], ["Rototoon", "Zhou & Xiao 2011"]);
     assert_eq!(effect.parameter_property("document", "OfxParamPropSecret", 0), "1");
     assert_eq!(effect.parameter_property("project", "OfxParamPropStringMode", 0), "OfxParamStringIsFilePath");

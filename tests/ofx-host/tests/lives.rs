@@ -1,19 +1,18 @@
 //! Instances on several threads, bundles at odd places, and compositions that another version stored.
 
 use crate::common::{
-    CUTOUT, FILTER, HEIGHT, IDS, MATTE, MATTES, OK, OVERLAY, ROTO, WHOLE, WIDTH, bundles, document, effect, host, kept,
-    pattern, rendered,
+    CUTOUT, FILTER, HEIGHT, MATTE, OK, OUTPUTS, ROTO, WHOLE, WIDTH, bundles, document, drawn_document, effect, host,
+    kept, pattern, rendered,
 };
 use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Settings};
 use serde_json::{Value, json};
 use std::path::Path;
 
-const OUTPUTS: [f64; 5] = [CUTOUT, MATTE, OVERLAY, IDS, MATTES];
-
 fn chosen(host: &Host, output: f64) -> Effect<'_> {
     let mut effect = effect(host, FILTER, &ClipSettings::default());
     effect.set("output", &[output]);
     effect.set_text("redParts", "star");
+    effect.set_text("document", &drawn_document());
     effect
 }
 
@@ -38,7 +37,7 @@ fn instances_are_made_and_deleted_while_others_render() {
         }
         // Meanwhile others come, render another frame, and go.
         for round in 0..20 {
-            let mut other = chosen(&host, OUTPUTS[round % 5]);
+            let mut other = chosen(&host, OUTPUTS[round % OUTPUTS.len()]);
             picture(&mut other, 1.0);
             assert_eq!(other.destroy(), OK);
         }
@@ -92,7 +91,7 @@ fn one_image_is_enough() {
         effect.set_clip("Output", &ClipSettings::default());
         effect.set_frame("Source", 2.0, WIDTH, &pattern(2));
         assert_eq!(effect.create(), OK);
-        effect.set_text("document", &document());
+        effect.set_text("document", &drawn_document());
         effect.set("output", &[output]);
         effect.set_text("redParts", "star");
         assert_eq!(effect.frames_needed("Source", 2.0), [2.0, 2.0]);

@@ -14,6 +14,7 @@
 //! - `order`: parts nearer and farther
 //! - `listing`: the menu of the parts, buttons that go from part to part, and their names
 //! - `matrix`: what hosts do, with each output
+//! - `cels`: painted regions and strokes, as the command line draws them
 //! - `looks`: the falloff of soft borders, and the colours of parts
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
@@ -24,6 +25,7 @@
 
 mod actions;
 mod buttons;
+mod cels;
 mod common;
 mod describing;
 mod faults;

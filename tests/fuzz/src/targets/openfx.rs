@@ -2,9 +2,10 @@
 
 use crate::given::{self, name, number};
 use arbitrary::{Result, Unstructured};
+use rototoon::pipeline::Cels;
 use rototoon::project::Document;
 use rototoon::render::composite::Blend;
-use rototoon::scene::{Falloff, FalloffCurve, Raster};
+use rototoon::scene::{Falloff, FalloffCurve, FrameNumber, Raster};
 use rototoon_ofx::ofx::Bounds;
 use rototoon_ofx::ofx::effect::Region;
 use rototoon_ofx::pixels::{CLEAR, Depth, Format, Layout, Premultiplication};
@@ -40,8 +41,12 @@ fn drawn(document: &Document, u: &mut Unstructured) -> Result<()> {
     let looks = looks(document, u)?;
     let settings = Settings { looks, ..settings };
     let (parts, _) = selected(&document.scene.parts, &settings.parts);
+    let cels = [Cels::regions(document), Cels::strokes(document)].into_iter().flatten();
+    let frame = settings.document_time as FrameNumber;
+    let drawn = cels.flat_map(|cels| cels.on(frame, placement.magnification()));
+    let drawn = drawn.map(|region| region.moved(|p| placement.place_magnified(p))).collect();
     let named = |names: &str| selected(&document.scene.parts, names).0;
-    let picture = Picture::new(&document.scene, &parts, &named, &settings, &placement);
+    let picture = Picture::new(&document.scene, &parts, &named, drawn, &settings, &placement);
     let window = window(&bounds);
     let _ = picture.changes_nothing(window);
     if let (Some(found), _) = picture.bounds() {
@@ -80,7 +85,15 @@ fn falloff(u: &mut Unstructured) -> Result<Falloff> {
 }
 
 fn settings(u: &mut Unstructured) -> Result<Settings> {
-    let output = *u.choose(&[Output::Cutout, Output::Matte, Output::Overlay, Output::Ids, Output::Mattes])?;
+    let output = *u.choose(&[
+        Output::Cutout,
+        Output::Matte,
+        Output::Overlay,
+        Output::Ids,
+        Output::Mattes,
+        Output::Painted,
+        Output::Cel,
+    ])?;
     let parts = if u.ratio(1u8, 4)? { name(u)? } else { String::new() };
     let colour = [0.5, 1.0, 0.0, f32::from(u.arbitrary::<u8>()?) / 255.0];
     let mut shape = [0.0; 4];
@@ -99,6 +112,7 @@ fn settings(u: &mut Unstructured) -> Result<Settings> {
         shown: true,
         parts,
         channel_parts: [name(u)?, name(u)?, String::new(), String::new()],
+        drawn_names: String::new(),
         looks: BTreeMap::new(),
         curves: u.arbitrary()?,
         invert: u.arbitrary()?,

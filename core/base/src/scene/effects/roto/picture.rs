@@ -11,14 +11,14 @@ const MOTION: Option<&str> = Some("motion");
 const PLANE: [f64; 2] = [-1_000_000.0, 1_000_000.0];
 
 /// These parameters in order.
-pub const PICTURE_PARAMETERS: [EffectParameter; 53] = [
+pub const PICTURE_PARAMETERS: [EffectParameter; 54] = [
     parameter("picture", "Picture", EffectKind::Group(true), None, "The picture made from the shapes."),
     parameter(
         "output",
         "Output",
-        EffectKind::Choice(&["Cutout", "Matte", "Overlay", "Ids", "Mattes"]),
+        EffectKind::Choice(&["Cutout", "Matte", "Overlay", "Ids", "Mattes", "Paint", "Painted", "Lines", "Cel"]),
         PICTURE,
-        "The source cut out by the parts, the matte of the parts, their outlines over the source, a colour for each part, or a matte of its own in each channel.",
+        "The source cut out by the parts, the matte of the parts, their outlines over the source, a colour for each part, or a matte of its own in each channel; painted regions, the source over them, strokes, or strokes over painted regions.",
     ),
     parameter(
         "matteChannel",
@@ -51,6 +51,13 @@ pub const PICTURE_PARAMETERS: [EffectParameter; 53] = [
     parameter("greenParts", "Green parts", EffectKind::Text, PICTURE, "Mattes: the parts in green."),
     parameter("blueParts", "Blue parts", EffectKind::Text, PICTURE, "Mattes: the parts in blue."),
     parameter("alphaParts", "Alpha parts", EffectKind::Text, PICTURE, "Mattes: the parts in alpha."),
+    parameter(
+        "drawnNames",
+        "Regions and strokes",
+        EffectKind::Text,
+        PICTURE,
+        "Paint, Painted, Lines and Cel: the names of those to draw, separated by commas, such as region 3, stroke 1*. Empty draws all.",
+    ),
     parameter(
         "invert",
         "Invert",
