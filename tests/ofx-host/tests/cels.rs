@@ -172,6 +172,7 @@ fn proxies_of_a_painted_drawing_are_its_proxy_over_that_of_the_paint() {
         let wanted = multiplied([0, 1, 2, 3].map(|k| source[first + k]), paint.get(x, y));
         assert!(apart(&[*found], &[wanted]) < 1e-6, "{x} {y}: {found:?} {wanted:?}");
     }
+    assert_eq!(effect.destroy(), OK);
     usual(host);
 }
 
@@ -370,7 +371,7 @@ fn without_a_source_its_paint_shows_alone() {
     let painted = rendered(&host, &mut effect, 1.0, WHOLE);
     effect.set("output", &[PAINT]);
     assert!(rendered(&host, &mut effect, 1.0, WHOLE) == painted);
-    assert!(painted.values.iter().any(|value| *value == 1.0));
+    assert!(painted.values.contains(&1.0));
 }
 
 #[test]
