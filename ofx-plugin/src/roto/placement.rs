@@ -137,7 +137,8 @@ mod tests {
         let bounds = mask::Bounds { least: half.place(Point::ZERO), most: half.place(Point::new(100.0, 50.0)) };
         assert_eq!(half.canonical(&bounds), region);
         let p = Point::new(13.0, 37.5);
-        assert_eq!((half.magnification(), half.place_magnified(p * 0.5)), (0.5, Point::new(0.25 * 13.0 + 2.5, 8.75)));
+        assert_eq!((half.magnification(), half.place_magnified(p * 0.5)), (0.5, Point::new(5.75, -16.25)));
+        assert_eq!(half.place_magnified(p * 0.5), half.place(p));
         assert_eq!(half.footage(half.shown(p)), p);
         assert_eq!(half.shown(Point::ZERO), [10.0, 70.0]);
         assert_eq!(half.place(Point::new(100.0, 50.0)), Point::new(27.5, -10.0));

@@ -15,6 +15,7 @@
 //! - `listing`: the menu of the parts, buttons that go from part to part, and their names
 //! - `matrix`: what hosts do, with each output
 //! - `cels`: painted regions and strokes, as the command line draws them
+//! - `unpainted`: paint and strokes where there are none, cannot be read, or only some are wanted
 //! - `looks`: the falloff of soft borders, and the colours of parts
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
@@ -45,3 +46,4 @@ mod session;
 mod shapes;
 mod standing;
 mod undo;
+mod unpainted;
