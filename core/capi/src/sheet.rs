@@ -117,6 +117,7 @@ impl Drawings<'_> {
             widths: Vec::new(),
             material: label(0),
             layer: label(1),
+            peg: None,
         }
     }
 

@@ -330,8 +330,8 @@ mod tests {
             &[
                 "drawings[0] (frame 0).spacing: the spacing chart has 1 shares, expected one for each of 3 frames to the \
                  next key",
-                "drawings[1] (frame 4).spacing: found \"quickly\", expected a movement function: constant, linear, ease_in, \
-                 ease_out, ease_in_out, cosine or bounce",
+                "drawings[1] (frame 4).spacing: found \"quickly\", expected a movement function: smooth, constant, linear, \
+                 ease_in, ease_out, ease_in_out, cosine or bounce",
                 "pegs[0] \"arm\".keys[0] (frame 0).timing: found \"slowly\", expected a movement function: constant, linear, \
                  ease_in, ease_out, ease_in_out, cosine or bounce",
             ],

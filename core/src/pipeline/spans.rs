@@ -92,8 +92,8 @@ impl Sheet {
         let (first, second) = (&self.keys[key], &self.keys[key + 1]);
         let by_hand = self.by_hand.get(key).map_or(&[][..], Vec::as_slice);
         let alone = self.alone.get(key).map_or(&[][..], Vec::as_slice);
+        let [strokes, mut others] = self.pegs.compared(key, [first, second]);
         // A stroke without points has no counterpart.
-        let mut others = second.strokes.clone();
         for &stroke in alone {
             let count = others.len();
             let Some(other) = others.get_mut(stroke) else {
@@ -102,7 +102,7 @@ impl Sheet {
             };
             other.points = Vec::new();
         }
-        match_strokes(&first.strokes, &others, by_hand, options, progress).map_err(|error| match error {
+        match_strokes(&strokes, &others, by_hand, options, progress).map_err(|error| match error {
             crate::tween::matching::MatchingError::Cancelled(cancelled) => PipelineError::Cancelled(cancelled),
             other => PipelineError::Tween(format!("frames {} and {}: {other}", first.frame, second.frame)),
         })

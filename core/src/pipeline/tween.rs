@@ -84,8 +84,8 @@ pub fn tween(
         progress.report("matching strokes", 0.8 * k as f64 / (keys.len() - 1) as f64)?;
         let by_hand: Vec<HandPair> =
             read.pairs.iter().filter(|p| p.drawing == k).map(|p| HandPair { from: p.from, to: p.to }).collect();
-        let strokes = (&pair[0].strokes, &pair[1].strokes);
-        let found = match_strokes(strokes.0, strokes.1, &by_hand, &MatchingOptions::default(), &crate::scene::Silent);
+        let [first, second] = pegs.compared(k, [&pair[0], &pair[1]]);
+        let found = match_strokes(&first, &second, &by_hand, &MatchingOptions::default(), &crate::scene::Silent);
         matchings.push(found.map_err(|e| wrong(&format!("frames {} and {}: {e}", pair[0].frame, pair[1].frame)))?);
     }
     progress.report("drawing in-betweens", 0.8)?;
@@ -167,6 +167,8 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         widths: s.widths.clone(),
         material: s.material,
         layer: s.layer,
+        // The given pegs say it.
+        peg: None,
     };
     let place = || format!("{}.spacing", drawing_place(k, drawing.frame));
     let spacing = spacing(&drawing.spacing).map_err(|e| PipelineError::Tween(format!("{}: {e}", place())))?;
@@ -198,7 +200,7 @@ pub(super) fn spacing(written: &WrittenTiming) -> Result<Spacing, String> {
     Ok(match written {
         WrittenTiming::Smooth => Spacing::Smooth,
         WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
-        other => Spacing::Timing(timing(other)?),
+        other => Spacing::Timing(timing(other).map_err(|error| error.replacen("constant,", "smooth, constant,", 1))?),
     })
 }
 
@@ -239,7 +241,7 @@ pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
-    let Stroke { points, closed, colour, fill, widths, material, layer } = drawn.stroke;
+    let Stroke { points, closed, colour, fill, widths, material, layer, peg: _ } = drawn.stroke;
     (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill, widths, colour, material, layer, peg: None })
 }
 

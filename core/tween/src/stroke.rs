@@ -19,12 +19,19 @@ pub struct Stroke {
     pub fill: bool,
     /// Number of the layer. Matching adds a cost where both strokes have a layer and the layers differ.
     pub layer: Option<u32>,
+    /// Number of the peg on which it is hung. Matching pairs no strokes of different pegs.
+    pub peg: Option<u32>,
 }
 
 impl Stroke {
     /// A stroke of these points without colour, material and layer.
     pub fn new(points: Vec<Point>, closed: bool) -> Self {
         Self { points, closed, ..Self::default() }
+    }
+
+    /// Whether no peg forbids that the strokes are a pair.
+    pub(crate) fn may_be(&self, other: &Self) -> bool {
+        self.peg.zip(other.peg).is_none_or(|(own, other)| own == other)
     }
 
     /// Length in pixels.

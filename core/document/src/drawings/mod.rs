@@ -20,7 +20,7 @@
 //! - `pairs`: stroke `from` of the drawing on `frame` becomes stroke `to` of the next drawing, or vanishes if `to` is
 //!   null. Both are indices from 0.
 //! - `pegs`: `turn` is in degrees from x towards y, and complete turns count. Fields missing in a key have their values
-//!   at rest. A peg without `parent` has none.
+//!   at rest. A peg without `parent`, or with `null`, has none.
 //!
 //! Tweening writes these fields; they replace those of an earlier run:
 //!
@@ -286,6 +286,9 @@ mod tests {
         assert_eq!(read.pairs, [DrawnPair { drawing: 0, from: 0, to: None }]);
         assert_eq!((read.pegs[0].parent, read.pegs[0].keys[0].turn), (Some(1), 90.0));
         assert_eq!(read.pegs[0].keys[0].timing, WrittenTiming::Curve(vec![(0.5, 0.2)]));
+        let root =
+            document(r#""pegs": [{"name": "a", "parent": null, "pivot": [0, 0], "keys": []}]"#).drawings().unwrap();
+        assert_eq!(root.pegs[0].parent, None);
         assert_eq!(document(r#""x": 1"#).drawings(), Ok(Drawings::default()));
     }
 

@@ -158,8 +158,11 @@ impl Reader {
             return peg;
         }
         let place = if peg.name.is_empty() { format!("pegs[{k}]") } else { peg_place(k, &peg.name) };
-        let parent = |value: Option<&Value>, place: &str| named(value, place, names);
-        peg.parent = self.noted(given(fields, &place, "parent", parent)).flatten();
+        let parent = |value: Option<&Value>, place: &str| match value {
+            Some(Value::Null) => Ok(None),
+            value => named(value, place, names).map(Some),
+        };
+        peg.parent = self.noted(given(fields, &place, "parent", parent)).flatten().flatten();
         peg.pivot = self.noted(point(fields.get("pivot"), &format!("{place}.pivot"))).unwrap_or_default();
         let keys = self.noted(array(fields.get("keys"), &format!("{place}.keys")));
         let keys = keys.into_iter().flatten().enumerate();
@@ -236,6 +239,9 @@ fn timing(value: Option<&Value>, place: &str) -> Result<WrittenTiming, DrawingsE
         Some(Value::Object(fields)) => {
             let place = format!("{place}.curve");
             let list = array(fields.get("curve"), &place)?;
+            if list.is_empty() {
+                return Err(wrong(&place, "an empty list", "at least one pair of time and share"));
+            }
             let pair = |(k, v): (usize, &Value)| point(Some(v), &format!("{place}[{k}]")).map(|p| (p.x, p.y));
             list.iter().enumerate().map(pair).collect::<Result<_, _>>().map(WrittenTiming::Curve)
         }

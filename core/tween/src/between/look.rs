@@ -30,6 +30,7 @@ impl Sequence {
             fill: self.tracks[t].closed && own.is_some_and(|s| s.fill),
             material: own.and_then(|s| s.material),
             layer: own.and_then(|s| s.layer),
+            peg: None,
         }
     }
 }

@@ -5,7 +5,7 @@
 //! first; every end is used once. A chain of several strokes whose two ends continue each other is closed.
 //!
 //! Limits: at a place where many lines meet, the smoothest continuation is taken, which is not always the line that was
-//! drawn. Strokes of different layers, materials or colours are never joined.
+//! drawn. Strokes of different layers, materials, colours or pegs are never joined.
 
 use super::super::chain::Chain;
 use super::super::grid::Grid;
@@ -108,7 +108,7 @@ fn joins(strokes: &[Stroke], ends: &[End], lengths: &[f64], most: f64) -> Vec<Jo
 }
 
 fn alike(a: &Stroke, b: &Stroke) -> bool {
-    (a.layer, a.material, a.colour) == (b.layer, b.material, b.colour)
+    (a.layer, a.material, a.colour, a.peg) == (b.layer, b.material, b.colour, b.peg)
 }
 
 /// Which strokes are in one chain already.

@@ -100,7 +100,7 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
         for (i, seeds) in starts.chain(of_loose) {
             let paired = pairs.contains_key(&i);
             let grown = seeds.into_iter().filter(|j| !taken.contains(j)).filter_map(|j| {
-                let points = self.pieces[j].points.clone();
+                let points = Some(&self.pieces[j]).filter(|own| self.whole[i].may_be(own))?.points.clone();
                 let alone = Chain { cost: self.cost(i, &points)?, pieces: vec![(j, false)], points };
                 self.grown(i, alone, &grid, &free, &taken)
             });
@@ -141,6 +141,9 @@ impl<E: Fn(usize, Point) -> (Point, f64)> Search<'_, E> {
     /// The chain with one more piece, added behind or before it. `by_last` says that the piece's last point meets the
     /// chain.
     fn joined(&self, i: usize, chain: &Chain, behind: bool, piece: usize, by_last: bool) -> Option<Chain> {
+        if !self.whole[i].may_be(&self.pieces[piece]) {
+            return None;
+        }
         let added = &self.pieces[piece].points;
         // Behind the chain a piece runs away from the end that meets it. Before the chain it runs towards that end.
         let reversed = behind == by_last;
