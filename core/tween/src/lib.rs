@@ -41,6 +41,7 @@
 
 #![forbid(unsafe_code)]
 
+mod angle;
 pub mod between;
 pub mod breakdown;
 mod chain;

@@ -9,6 +9,7 @@
 //! seldom shows the true pivot, so the arc is weaker by default ([`super::Options::arcs`]). Given pegs replace groups
 //! and move as given.
 
+use super::super::angle::wrap;
 use super::super::peg::PegTree;
 use super::super::peg::propose::{Group, Moving};
 use super::join::{Asked, Ends, Run, runs};
@@ -235,15 +236,18 @@ fn worlds(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) ->
         for k in 1..keys {
             let (from, to) = (places(group, k - 1, k), places(group, k, k - 1));
             let (last, turn) = by_key[k - 1];
+            let on = group.parent.map(|parent| (worlds[parent][k - 1], worlds[parent][k]));
             by_key.push(if from.is_empty() {
                 // No stroke shows the movement, so the group moves with its parent.
-                group.parent.map_or((last, turn), |parent| {
-                    let (before, after) = (worlds[parent][k - 1], worlds[parent][k]);
+                on.map_or((last, turn), |(before, after)| {
                     (after.0.after(&before.0.inverse()).after(&last), turn + after.1 - before.1)
                 })
             } else {
                 let step = bounded(Similarity::fit(&from, &to));
-                (step.after(&last), turn + step.angle())
+                let carried = on.map_or(0.0, |(before, after)| after.1 - before.1);
+                // The shorter way round as the parent sees it: where a body turns by 170°, a mouth on it that was drawn at 181° does
+                // not go round the other way.
+                (step.after(&last), turn + carried + wrap(step.angle() - carried))
             });
         }
         worlds[g] = by_key;

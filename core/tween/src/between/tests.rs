@@ -378,3 +378,31 @@ fn closed_strokes_are_followed_back_from_any_start() {
         }
     }
 }
+
+#[test]
+fn a_mouth_goes_round_with_its_head_though_it_is_drawn_a_little_farther_round() {
+    let centre = Point::new(200.0, 200.0);
+    let head = |turn: f64| {
+        let spoke = |k: u32| {
+            let way = Point::from_angle(turn + 0.9 * f64::from(k)) * (1.0 + 0.1 * f64::from(k));
+            Stroke::new((0..12).map(|i| centre + way * (20.0 + 3.0 * f64::from(i))).collect(), false)
+        };
+        (0..7).map(spoke).collect::<Vec<Stroke>>()
+    };
+    // A mouth of its own turn: it is no part of the rigid head.
+    let mouth = |turn: f64, own: f64| {
+        let middle = centre + Point::from_angle(turn + 1.2).rotate(Point::new(0.0, 30.0));
+        let at = |i: i32| Point::new(f64::from(i) - 6.0, 0.15 * f64::from(i * i));
+        Stroke::new((0..13).map(|i| middle + Point::from_angle(own).rotate(at(i))).collect(), false)
+    };
+    let drawn = |turn: f64, own: f64| [head(turn), vec![mouth(turn, own)]].concat();
+    let turn = 170f64.to_radians();
+    let keys = vec![key(0, drawn(0.0, 0.0)), key(8, drawn(turn, turn + 0.4))];
+    let options = Options { arcs: 1.0, ..Options::default() };
+    let moving = Sequence::new(keys, &[by_index(8)], &GivenPegs::default(), &options).unwrap();
+    for frame in 1..8 {
+        let middle = polygon::center(&moving.at(frame)[7].stroke.points);
+        let away = middle.distance(centre);
+        assert!((away - 30.0).abs() < 6.0, "frame {frame}: {away} px from the head's middle");
+    }
+}

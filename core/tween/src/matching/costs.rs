@@ -4,9 +4,10 @@
 //! do not depend on the movement. They and the ways to lay one stroke on another are computed once and remembered while
 //! the drawings are small. In large drawings only the strokes nearest to the expected place are compared.
 
+use super::super::angle::wrap;
 use super::super::grid::Grid;
 use super::super::stroke::Stroke;
-use super::outline::{Outline, Way, likely, wrap};
+use super::outline::{Outline, Way, likely};
 use super::similarity::Movement;
 use super::{Fixed, Options};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};

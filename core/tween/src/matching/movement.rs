@@ -90,7 +90,7 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
 /// Whether two movements take the drawing to about the same place.
 fn alike(a: &Figure, one: &Movement, other: &Movement) -> bool {
     let apart = one.apply(a.middle).distance(other.apply(a.middle));
-    super::outline::wrap(one.turn - other.turn).abs() < SAME
+    crate::angle::wrap(one.turn - other.turn).abs() < SAME
         && (one.scale / other.scale).ln().abs() < SAME
         && apart < SAME * a.radius * one.scale.max(other.scale)
 }

@@ -8,6 +8,7 @@
 //! from drawing to drawing. The sign of the area therefore decides the direction, unless the curve is too thin to have
 //! a clear sign.
 
+use super::super::angle::wrap;
 use super::super::stroke::Stroke;
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon, polyline};
@@ -152,12 +153,6 @@ pub(super) fn likely(all: &[Vec<Way>], expected: f64, stiffness: f64) -> Vec<Way
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     found.into_iter().take(WAYS).map(|(_, way)| way).collect()
-}
-
-/// The equivalent angle from −π to π.
-pub(super) fn wrap(angle: f64) -> f64 {
-    let turn = std::f64::consts::TAU;
-    angle - turn * (angle / turn).round()
 }
 
 #[cfg(test)]

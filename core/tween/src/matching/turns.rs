@@ -7,8 +7,9 @@
 
 use super::super::grid::Grid;
 use super::costs::{Figure, Ways};
-use super::outline::{Way, wrap};
+use super::outline::Way;
 use super::relaxation::Chosen;
+use crate::angle::wrap;
 use rototoon_base::geometry::Point;
 
 /// Share of the variance of the shape by which two ways may differ and still fit equally well.
