@@ -282,8 +282,8 @@ fn check_finds_all_that_is_wrong_with_drawings_pairs_and_pegs() {
     assert_eq!(
         check(&path).1[1..],
         [
-            "error drawings[0] (frame 2).spacing: found \"fast\", expected a movement function: constant, linear, ease_in, \
-             ease_out, ease_in_out, cosine or bounce",
+            "error drawings[0] (frame 2).spacing: found \"fast\", expected a movement function: smooth, constant, linear, \
+             ease_in, ease_out, ease_in_out, cosine or bounce",
             "error pegs[0] \"a\".keys[0] (frame 2).scale: found 0, expected a number from 1e-6 to 1e9",
             "error pegs[0] \"a\".parent: the peg is its own ancestor, expected parents without a loop",
             "warning pegs[0] \"a\": no stroke hangs on the peg, so it has no effect",
