@@ -20,6 +20,7 @@
 //! - [`feather`]: soft borders
 //! - [`widths`]: the feather at any place, from widths along contours
 //! - [`line`](mod@line): lines of a width
+//! - `cells`: the areas of a pixel that several regions divide
 //! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
 //!
@@ -47,6 +48,7 @@
 
 #![forbid(unsafe_code)]
 
+mod cells;
 pub mod composite;
 pub mod coverage;
 pub mod cryptomatte;

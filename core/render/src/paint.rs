@@ -1,11 +1,10 @@
 //! Painted regions and strokes of a drawing: as a picture with alpha, below the drawing, and as ids for keyers.
 //!
 //! Regions of a drawing lie side by side, and their outlines meet in the middle of the line between them. Drawn one over the
-//! other with opacities, they would leave seams there: two halves of a pixel cover three quarters of it. So shares of a
-//! pixel are areas, and they add up. From the front to the back, each region gets its own area, but no more than the
-//! regions before it leave. Where regions do not overlap within a pixel, and wherever one of them covers it, that is exact. Where the
-//! borders of overlapping regions cross in one pixel, the farther one may get some of the area behind the nearer one.
-//! (OpenGL has the same rule under the name *saturate*: Segal & Akeley, The OpenGL Graphics System, section on blending.)
+//! other with opacities, they would leave seams there: two halves of a pixel cover three quarters of it. Two strokes at one
+//! place would be denser than one. So shares of a pixel are areas. From the front to the back, each region shows where it is,
+//! times its opacity, times what the regions before it leave there. That is exact: where the borders of several regions meet
+//! in a pixel, it is cut into the cells between them ([`super::cells`]).
 //!
 //! The area of a region is the union of its polygons minus that of its holes ([`super::coverage`]). A stroke is a region too
 //! ([`super::stroke`]). Colours are mixed in linear light.
@@ -14,6 +13,7 @@
 //! equation for `multiply` with alpha): ink darkens the paint below it, white paper leaves it, and where nothing is painted the
 //! drawing is as it is. Limits: grey paper darkens the paint too.
 
+use super::cells::{self, Borders};
 use super::coverage::{Shape, Window};
 use super::cryptomatte;
 use super::encode::{self, EncodeError, Format};
@@ -22,6 +22,9 @@ use super::visible::{LEAST, Share, Visible};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::colour;
+
+/// Rows of a window that are shared out at once.
+const ROWS: usize = 64;
 
 /// A painted region, or a stroke, on one frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,20 +52,22 @@ impl Region {
 
 /// The share of each region in each pixel of a picture. Regions go from the back to the front; a share's `part` is an index of them.
 pub fn shares(regions: &[Region], width: usize, height: usize) -> Visible {
-    Visible::in_bands(width, height, |band| {
-        let mut shown = vec![Vec::new(); band.width() * band.height()];
-        each_share(regions, band, &mut || true, |pixel, share| shown[pixel].push(share));
-        shown
-    })
+    Visible::in_bands(width, height, |band| shown_in(regions, band, &mut || true).unwrap_or_default())
 }
 
 /// The paint of a window alone: linear light multiplied by alpha, and alpha. The value of a pixel does not depend on the window. Calls
-/// `go_on` for each row of each region, and returns `None` if it returns false.
+/// `go_on` for each row, and each row of a region, and returns `None` if it returns false.
 pub fn paint_in(regions: &[Region], window: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Raster<[f32; 4]>> {
     let colours = lights(regions);
     let mut picture = Raster::new(window.width(), window.height(), [0.0; 4]);
-    let pixels = picture.data_mut();
-    each_share(regions, window, go_on, |pixel, share| add(&mut pixels[pixel], colours[share.part], share.coverage))?;
+    for top in (window.top..window.bottom).step_by(ROWS) {
+        // Shares take much more memory than pixels.
+        let band = Window { top, bottom: window.bottom.min(top + ROWS as i64), ..window };
+        let first = (top - window.top) as usize * window.width();
+        for (pixel, shown) in picture.data_mut()[first..].iter_mut().zip(shown_in(regions, band, go_on)?) {
+            shown.iter().for_each(|share| add(pixel, colours[share.part], share.coverage));
+        }
+    }
     Some(picture)
 }
 
@@ -71,33 +76,98 @@ pub fn bounds(regions: &[Region]) -> Option<Window> {
     regions.iter().flat_map(|region| &region.areas).filter_map(|area| Window::around(area)).reduce(Window::united)
 }
 
-/// Calls `give` with the index of each pixel of a band in which a region shows, and with its share, for one region after the
-/// other from the front to the back. `None` if `go_on` returns false.
-fn each_share(
-    regions: &[Region],
-    band: Window,
-    go_on: &mut dyn FnMut() -> bool,
-    mut give: impl FnMut(usize, Share),
-) -> Option<()> {
-    let mut left = vec![1.0f32; band.width() * band.height()];
+/// What each region shows in each pixel of a band, from the front to the back. `None` if `go_on` returns false.
+fn shown_in(regions: &[Region], band: Window, go_on: &mut dyn FnMut() -> bool) -> Option<Vec<Vec<Share>>> {
+    let mut own = vec![Vec::new(); band.width() * band.height()];
+    let mut left = vec![1.0f32; own.len()];
     for (part, region) in regions.iter().enumerate().rev() {
         if !go_on() {
             return None;
         }
         let Some((window, polygons)) = near(region, band) else { continue };
-        let own = area(polygons, &region.holes, window, go_on)?;
+        let area = area(polygons, &region.holes, window, go_on)?;
         for (row, y) in (window.top..window.bottom).enumerate() {
             let first = (y - band.top) as usize * band.width() + (window.left - band.left) as usize;
-            for (x, own) in own.row(row).iter().enumerate() {
-                let coverage = (region.opacity * own).min(left[first + x]);
-                if coverage >= LEAST {
-                    left[first + x] -= coverage;
-                    give(first + x, Share { part, coverage });
+            for (x, &coverage) in area.row(row).iter().enumerate() {
+                if coverage < LEAST || left[first + x] < LEAST {
+                    continue;
+                }
+                own[first + x].push(Share { part, coverage });
+                if coverage == 1.0 {
+                    left[first + x] *= 1.0 - region.opacity;
                 }
             }
         }
     }
-    Some(())
+    let mut pixels = Pixels { regions, band, borders: vec![None; regions.len()] };
+    let mut shown = Vec::with_capacity(own.len());
+    for (at, own) in own.into_iter().enumerate() {
+        if at % band.width() == 0 && !go_on() {
+            return None;
+        }
+        shown.push(pixels.shown(at, own));
+    }
+    Some(shown)
+}
+
+/// Pixels of a band, of which each is shared out by itself.
+struct Pixels<'a> {
+    regions: &'a [Region],
+    band: Window,
+    /// The borders of each region that were needed so far.
+    borders: Vec<Option<Borders>>,
+}
+
+impl Pixels<'_> {
+    /// What each region shows in a pixel. `own` are the areas of the regions there, the nearest first, as if each were alone.
+    fn shown(&mut self, at: usize, own: Vec<Share>) -> Vec<Share> {
+        if own.iter().filter(|share| share.coverage < 1.0).count() > 1 {
+            return self.divided(at, &own);
+        }
+        // The others cover the pixel, so what they leave is the same all over it.
+        let mut left = 1.0;
+        let alone = |share: Share| {
+            let own = f64::from(self.regions[share.part].opacity * share.coverage) * left;
+            left -= own;
+            (share.part, own)
+        };
+        let each: Vec<(usize, f64)> = own.into_iter().map(alone).collect();
+        rounded(each.into_iter())
+    }
+
+    /// The same where the borders of several regions meet.
+    fn divided(&mut self, at: usize, own: &[Share]) -> Vec<Share> {
+        let (regions, band) = (self.regions, self.band);
+        let partly = |share: &&Share| share.coverage < 1.0;
+        for &Share { part, .. } in own.iter().filter(partly) {
+            let made = || Borders::new(&regions[part].areas, &regions[part].holes, band);
+            self.borders[part].get_or_insert_with(made);
+        }
+        let layer = |share: &Share| {
+            let borders = self.borders[share.part].as_ref().filter(|_| share.coverage < 1.0);
+            (borders.map_or(cells::Layer::Whole, cells::Layer::Partly), regions[share.part].opacity)
+        };
+        let layers: Vec<_> = own.iter().map(layer).collect();
+        let (x, y) = (at % band.width(), at / band.width());
+        let shown = cells::shown(&layers, band.left + x as i64, band.top + y as i64);
+        rounded(own.iter().map(|share| share.part).zip(shown))
+    }
+}
+
+/// Shares in whole steps of a float below 1, so that their sum is exact: a pixel that is full has an alpha of exactly 1.
+fn rounded(shares: impl Iterator<Item = (usize, f64)>) -> Vec<Share> {
+    const STEPS: f64 = (1 << 24) as f64;
+    let (mut sum, mut before, mut found) = (0.0, 0.0, Vec::new());
+    for (part, own) in shares {
+        sum += own;
+        let now = (sum * STEPS).round().min(STEPS);
+        let coverage = ((now - before) / STEPS) as f32;
+        if coverage >= LEAST {
+            found.push(Share { part, coverage });
+            before = now;
+        }
+    }
+    found
 }
 
 /// The polygons of a region in the rows of a band, and the part of the band that contains them. All polygons of a row count,
