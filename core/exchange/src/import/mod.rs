@@ -10,6 +10,7 @@
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
 //! - `hidden`: frames on which a shape is not shown
+//! - `range`: keys beyond the footage
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
 
@@ -24,6 +25,7 @@ pub mod path;
 #[cfg(test)]
 mod probes;
 pub mod problem;
+mod range;
 pub mod silhouette;
 pub mod svg;
 mod svg_animation;

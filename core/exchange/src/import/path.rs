@@ -97,6 +97,13 @@ impl Path {
         std::iter::once(&mut self.start).chain(self.segments.iter_mut().flatten())
     }
 
+    /// Moves its points a share of the way to those of another path.
+    pub fn go(&mut self, to: &Self, share: f64) {
+        self.start = self.start.lerp(to.start, share);
+        let segments = self.segments.iter_mut().flatten().zip(to.segments.iter().flatten());
+        segments.for_each(|(own, to)| *own = own.lerp(*to, share));
+    }
+
     fn cubics(&self) -> impl Iterator<Item = [Point; 4]> + '_ {
         let mut from = self.start;
         self.segments.iter().map(move |&[first, second, to]| [std::mem::replace(&mut from, to), first, second, to])

@@ -9,6 +9,7 @@
 //!
 //! - A shape has keys on the frames on which any of its numbers or of its `transform`'s has one. Between keys numbers are taken
 //!   as linear, as Natron does for control points.
+//! - Keys beyond the footage are left out (`range`).
 //! - A curve is open if it is not closed yet or was drawn as an open one.
 //! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
 //! - The falloff of a feather is read. A curve is hidden where its opacity is 0 and, if its life time is *Custom*, where it is not
@@ -25,6 +26,7 @@ use super::limits::{MOST_POINTS, Points};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{Fault, LeftOut, parsed};
+use super::range::{Kept, Reach};
 use super::{ImportError, Shape, Shapes};
 use number::{child, curve, named, text_of};
 use rototoon_base::geometry::Point;
@@ -50,12 +52,14 @@ pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shape
         points: Points::all(),
         shapes: Vec::new(),
         left_out: LeftOut::default(),
+        reach: Reach::new(),
     };
     for context in document.descendants().filter(|node| named(*node, "RotoContext")) {
         if let Some(base) = child(context, "BaseLayer") {
             reader.layer(base)?;
         }
     }
+    reader.reach.check()?;
     let warnings = reader.left_out.lines(text);
     if reader.shapes.is_empty() && warnings.is_empty() {
         return Err(ImportError::Nothing("a Bézier curve of a Roto or RotoPaint node"));
@@ -70,6 +74,7 @@ struct Reader<'a> {
     points: Points,
     shapes: Vec<Shape>,
     left_out: LeftOut,
+    reach: Reach<ImportError>,
 }
 
 /// A control point: its place, the handle after it, the handle before it; x and y each.
@@ -105,7 +110,7 @@ impl Reader<'_> {
     fn shape(&mut self, item: Node) -> Result<Shape, Fault> {
         let knots = knots(item)?;
         let transform = Transform::read(item)?;
-        let frames = self.frames(item, &knots, transform.as_ref())?;
+        let frames = self.frames(item, &knots, transform.as_ref());
         if knots.len().saturating_mul(frames.len()) > MOST_POINTS {
             self.points.take(usize::MAX, item)?;
         }
@@ -142,31 +147,22 @@ impl Reader<'_> {
         Falloff { rate: (power * rate.rate()).min(Falloff::MOST), curve }
     }
 
-    /// The frames on which any number has a key; `still` if none has. Keys of the transformation that lie beyond the footage
-    /// count on its first or last frame.
-    fn frames(
-        &self,
-        item: Node,
-        knots: &[Knot],
-        transform: Option<&Transform>,
-    ) -> Result<BTreeSet<FrameNumber>, ImportError> {
+    /// The frames on which any number has a key; `still` if none has. Keys that lie beyond the footage count on its first or last
+    /// frame.
+    fn frames(&mut self, item: Node, knots: &[Knot], transform: Option<&Transform>) -> BTreeSet<FrameNumber> {
         let (first, last) = (self.footage.first, self.footage.last);
-        let mut times: BTreeSet<FrameNumber> = BTreeSet::new();
-        for time in knots.iter().flatten().flatten().flat_map(Channel::frames) {
-            let frame = time.round();
-            if !(f64::from(first)..=f64::from(last)).contains(&frame) {
-                let message =
-                    format!("found a key on frame {time}, expected a frame of the footage, {first} to {last}");
-                return Err(ImportError::at(item, message));
-            }
-            times.insert(frame as FrameNumber);
+        let kept = Kept::of(knots.iter().flatten().flatten().flat_map(Channel::frames), self.footage);
+        self.reach.add(&kept, || ImportError::at(item, kept.refused(self.footage)));
+        if let Some(told) = kept.told(&name(item), self.footage) {
+            self.left_out.push(item, told);
         }
+        let mut times = kept.frames;
         let moved = transform.into_iter().flat_map(Transform::frames);
         times.extend(moved.map(|time| time.round().clamp(first.into(), last.into()) as FrameNumber));
         if times.is_empty() {
             times.insert(self.still);
         }
-        Ok(times)
+        times
     }
 
     /// The path on a frame, in pixels of the footage.

@@ -6,6 +6,7 @@
 //! begins with the frame of its points. Coordinates are pixels with y up.
 //!
 //! - A shape has keys on the frames on which any of its numbers has one. Between keys numbers are taken as linear.
+//! - Keys beyond the footage are left out (`range`).
 //! - Flag 8192 of a curve: handles are relative to their points. Flag 32: the curve is open.
 //! - A point of a B-spline is one pair, perhaps with a weight after it. The spline is uniform and cubic, and its points are
 //!   guides that it does not pass through.
@@ -13,10 +14,12 @@
 //! - Left out with a warning that names the shape, since its place or form would be wrong: open B-splines (how they end is not
 //!   public), weights other than 1, expressions, and what `transform` leaves out.
 //! - The rate at which a feather falls off is read. A shape is hidden where its opacity (`opc`) is 0 and outside of its lifetime,
-//!   if that is a range of frames. Other opacities, those of layers, feather and brush strokes are ignored.
+//!   if that is a range of frames, and where it is invisible (`vis`). One that always is, or whose layer is, is left out.
+//! - Shapes that are inverted (`inv`) or not laid over those below (`bm`) come in as they are drawn, with a warning. Other opacities, those of layers, feather and brush strokes are ignored.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format"; scripts of Nuke 7 to 13 in public repositories.
 
+mod attributes;
 mod number;
 mod transform;
 mod words;
@@ -26,7 +29,9 @@ use super::limits::MOST_POINTS;
 use super::names::Names;
 use super::path::{Path, contours};
 use super::problem::Fault;
+use super::range::{Kept, Reach};
 use super::{ImportError, Shape, Shapes};
+use attributes::attribute;
 use glam::DAffine2;
 use number::{channel, number};
 use rototoon_base::geometry::Point;
@@ -48,11 +53,19 @@ const FRAME_RANGE: f64 = 4.0;
 ///
 /// An [`ImportError`] names the list and its place.
 pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
-    let mut reader =
-        Reader { text, footage, still, names: Names::default(), left: MOST_POINTS, found: Shapes::default() };
+    let mut reader = Reader {
+        text,
+        footage,
+        still,
+        names: Names::default(),
+        left: MOST_POINTS,
+        found: Shapes::default(),
+        reach: Reach::new(),
+    };
     for item in items(text)? {
         reader.walk(&item, &mut Vec::new())?;
     }
+    reader.reach.check()?;
     if reader.found.shapes.is_empty() && reader.found.warnings.is_empty() {
         return Err(ImportError::Nothing("a curvegroup of a Roto or RotoPaint node"));
     }
@@ -69,6 +82,7 @@ struct Reader<'a> {
     /// Points that the file may still have.
     left: usize,
     found: Shapes,
+    reach: Reach<ImportError>,
 }
 
 /// Layers around a shape, the outermost first, each with its transformation or with why it can't be read.
@@ -90,6 +104,7 @@ impl Reader<'_> {
             Some("curvegroup") => self.group(item, layers),
             Some("layer") => {
                 layers.push(match Transform::read(self.text, item) {
+                    _ if attributes::is_invisible(self.text, item) => Err("its layer is invisible".to_owned()),
                     Ok(found) => Ok(found),
                     Err(Fault::Omitted(reason)) => Err(reason),
                     Err(Fault::Wrong(error)) => return Err(error),
@@ -127,6 +142,9 @@ impl Reader<'_> {
         if kind != "bezier" && kind != "bspline" {
             return Err(Fault::Omitted(format!("found type {kind:?}, expected bezier or bspline")));
         }
+        if attributes::is_invisible(self.text, item) {
+            return Err(Fault::Omitted("it is invisible".into()));
+        }
         let own = Transform::read(self.text, item)?;
         let mut chain: Vec<&Transform> = Vec::new();
         for layer in layers {
@@ -136,7 +154,7 @@ impl Reader<'_> {
         let curve = curves.items().iter().find(|curve| curve.name() == Some("cc"));
         let curve = curve.ok_or_else(|| self.wrong(item, "curvegroup", "found no curve, expected {cc …}"))?;
         let (outline, time, at) = self.outline(curve, name, kind == "bspline")?;
-        let frames = self.frames(&outline.pairs, time, &chain, at)?;
+        let frames = self.frames((item, name), &outline.pairs, time, &chain, at);
         let full = || {
             let message = format!("found more than {MOST_POINTS} points up to here, expected fewer");
             Fault::Wrong(self.wrong(at, "p", message))
@@ -154,6 +172,10 @@ impl Reader<'_> {
         self.left = left;
         let keys: BTreeMap<_, _> = frames.into_iter().zip(made).collect();
         let (falloff, hidden) = (self.falloff(item, name), self.hidden(item, name));
+        if let Some(lost) = attributes::lost(self.text, item) {
+            let place = place(self.text, item.start);
+            self.found.warnings.push(format!("{place}: the shape {name:?} {lost}; it comes in as it is drawn"));
+        }
         let (shape, never) = Shape::new((self.names.free(name), outline.closed), keys, &hidden, self.footage);
         self.found.warnings.extend(never.map(|never| format!("{}: {never}", place(self.text, item.start))));
         self.found.shapes.push(Shape { falloff, ..shape });
@@ -174,6 +196,9 @@ impl Reader<'_> {
             }
             None => Vec::new(),
         };
+        // A visibility changes at once.
+        let visible = attribute(item, "vis").and_then(|value| channel(self.text, value, "a").ok());
+        found.extend(visible.into_iter().flat_map(|visible| visible.zeros(true)));
         let still = |name: &str| attribute(item, name).and_then(|value| number(self.text, value, "a").ok());
         if let (Some(FRAME_RANGE), Some(first), Some(last)) = (still("ltt"), still("ltn"), still("ltm")) {
             found.extend([[f64::NEG_INFINITY, first - 1.0], [last + 1.0, f64::INFINITY]]);
@@ -227,32 +252,33 @@ impl Reader<'_> {
         Ok((Outline { pairs, spline, closed, relative }, time, points))
     }
 
-    /// The frames on which any number has a key; the one of the points, or `still`, if none has. Keys of transformations that
-    /// lie beyond the footage count on its first or last frame.
+    /// The frames on which any number has a key; the one of the points, or `still`, if none has. Keys that lie beyond the footage
+    /// count on its first or last frame. Beside keys, the frame of the points says when they were drawn.
     fn frames(
-        &self,
+        &mut self,
+        (item, name): (&Item, &str),
         pairs: &[[Channel; 2]],
         time: Option<f64>,
         chain: &[&Transform],
         at: &Item,
-    ) -> Result<BTreeSet<FrameNumber>, ImportError> {
+    ) -> BTreeSet<FrameNumber> {
         let (first, last) = (self.footage.first, self.footage.last);
-        let mut times: BTreeSet<FrameNumber> = BTreeSet::new();
-        for time in pairs.iter().flatten().flat_map(Channel::frames).chain(time) {
-            let frame = time.round();
-            if !(f64::from(first)..=f64::from(last)).contains(&frame) {
-                let message =
-                    format!("found a key on frame {time}, expected a frame of the footage, {first} to {last}");
-                return Err(self.wrong(at, "p", message));
-            }
-            times.insert(frame as FrameNumber);
-        }
+        let keyed: Vec<f64> = pairs.iter().flatten().flat_map(Channel::frames).collect();
+        let inside = |time: &f64| (f64::from(first)..=f64::from(last)).contains(time);
+        let drawn = time.filter(|time| keyed.is_empty() || inside(time));
+        let still = keyed.is_empty();
+        let mut kept = Kept::of(keyed.into_iter().chain(drawn), self.footage);
+        kept.within |= still;
+        let (text, footage) = (self.text, self.footage);
+        self.reach.add(&kept, || wrong(text, at.start, "p", kept.refused(footage)));
+        self.found.warnings.extend(kept.told(name, footage).map(|told| format!("{}: {told}", place(text, item.start))));
+        let mut times = kept.frames;
         let moved = chain.iter().flat_map(|transform| transform.frames());
         times.extend(moved.map(|time| time.round().clamp(first.into(), last.into()) as FrameNumber));
         if times.is_empty() {
             times.insert(self.still);
         }
-        Ok(times)
+        times
     }
 
     fn pair(&self, item: &Item, weighted: bool) -> Result<[Channel; 2], Fault> {
@@ -294,12 +320,6 @@ impl Reader<'_> {
             .collect();
         Path::through(&knots, outline.closed)
     }
-}
-
-/// The value of an attribute of a shape.
-fn attribute<'a>(item: &'a Item<'a>, name: &str) -> Option<&'a Item<'a>> {
-    let attributes = item.items().iter().filter(|list| list.name() == Some("a")).flat_map(Item::items);
-    attributes.skip_while(|word| word.word() != Some(name)).nth(1)
 }
 
 #[cfg(test)]

@@ -112,7 +112,10 @@ fn what_would_be_wrong_is_left_out_or_told() {
         ("{p {0 0} {10 0}}", "found 2 pairs"),
         ("{p {0 0} {nan 0} {0 0} {0 0} {1 1} {0 0}}", "expected a number"),
         ("{p {0 0} {x7f800000 0} {0 0} {0 0} {1 1} {0 0}}", "expected a number"),
-        ("{px 77 {0 0} {1 0} {0 0} {0 0} {1 1} {0 0}}", "found a key on frame 77"),
+        (
+            "{p {0 0} {{{77 0} {78 4}} 0} {0 0} {0 0} {1 1} {0 0}}",
+            "found 2 keys on frames 77 to 78, expected a frame of the footage, 1 to 9",
+        ),
         ("{q}", "found no points"),
     ] {
         let error = nuke(&script("bezier", points, ""), &footage(), 1).unwrap_err().to_string();
@@ -180,4 +183,66 @@ fn a_closed_spline_is_uniform_and_cubic() {
             assert!(apart < 1e-9, "{knot}: {:?}", shape.keys[&frame]);
         }
     }
+}
+
+#[test]
+fn keys_beyond_the_footage_give_the_form_on_its_ends() {
+    let points = |keys: &str| {
+        format!("{{p {{0 0}} {{{{{keys}}} 0}} {{0 0}} {{0 0}} {{50 0}} {{0 0}} {{0 0}} {{50 90}} {{0 0}}}}")
+    };
+    for (keys, expected, said) in [
+        ("{-3 0} {5 80}", vec![(1, 40.0), (5, 80.0)], "has a key on frame -3, beyond the footage's frames 1 to 9"),
+        ("{5 0} {8 30} {13 80}", vec![(5, 0.0), (8, 30.0), (9, 40.0)], "has a key on frame 13,"),
+        ("{-3 0} {13 16}", vec![(1, 4.0), (9, 12.0)], "has 2 keys on frames -3 to 13,"),
+    ] {
+        let found = nuke(&script("bezier", &points(keys), ""), &footage(), 1).unwrap();
+        let x: Vec<_> = found.shapes[0].keys.iter().map(|(frame, points)| (*frame, points[0].x)).collect();
+        assert_eq!(x, expected);
+        assert_eq!(found.warnings.len(), 1);
+        assert!(found.warnings[0].starts_with("line 10, column 5: the shape \"Bezier1\" "), "{:?}", found.warnings);
+        assert!(found.warnings[0].contains(said), "{:?}", found.warnings);
+    }
+    // A still shape may have been drawn on any frame.
+    let still = "{px 77 {0 0} {1 0} {0 0} {0 0} {1 1} {0 0}}";
+    let found = nuke(&script("bezier", still, ""), &footage(), 1).unwrap();
+    assert_eq!((found.shapes[0].keys.keys().copied().collect::<Vec<_>>(), found.warnings.len()), (vec![9], 1));
+    // Beside keys that is the time of the last change.
+    let moving = "{px 77 {0 0} {{{2 0} {4 1}} 0} {0 0} {0 0} {1 1} {0 0}}";
+    assert_eq!(nuke(&script("bezier", moving, ""), &footage(), 1).unwrap().warnings, [""; 0]);
+    // A shape beyond the footage keeps its held form beside another one.
+    let late = script("bezier", &points("{20 7} {30 8}"), "").replace("Bezier1", "Late");
+    let found = nuke(&(script("bezier", &points("{2 0} {4 1}"), "") + &late), &footage(), 1).unwrap();
+    let keys: Vec<_> =
+        found.shapes.iter().map(|shape| shape.keys.iter().map(|(f, p)| (*f, p[0].x)).collect::<Vec<_>>()).collect();
+    assert_eq!(keys, [vec![(9, 7.0)], vec![(2, 0.0), (4, 1.0)]]);
+}
+
+#[test]
+fn invisible_inverted_and_subtracting_shapes_are_told() {
+    let read = |attributes: &str| nuke(&script("bezier", BOX, &format!("{{a {attributes}}}")), &footage(), 4).unwrap();
+    for (attributes, said) in [
+        ("inv 1", "is inverted; it comes in as it is drawn"),
+        ("osw 1 bm x41400000", "subtracts its area; it comes in as it is drawn"),
+        ("bm 5 inv 1", "is inverted and keeps only what is inside of it"),
+        ("bm 13", "has the blending mode 13"),
+    ] {
+        let found = read(attributes);
+        let told = format!("line 10, column 5: the shape \"Bezier1\" {said}");
+        assert!(found.shapes.len() == 1 && found.warnings[0].starts_with(&told), "{:?}", found.warnings);
+    }
+    for plain in ["inv 0 bm 0 vis 1", "bm 4"] {
+        assert_eq!((read(plain).shapes.len(), read(plain).warnings.len()), (1, 0));
+    }
+    let found = read("vis 0");
+    assert!(
+        found.shapes.is_empty() && found.warnings[0].contains("is left out: it is invisible"),
+        "{:?}",
+        found.warnings
+    );
+    let found = read("vis {{1 1} {3 0} {6 1}}");
+    assert_eq!(found.shapes[0].keys.keys().copied().collect::<Vec<_>>(), [2, 6]);
+    assert_eq!((&found.shapes[0].absent[..], found.warnings.len()), (&[[3, 5]][..], 0));
+    let layer = script("bezier", BOX, "").replace("{a}", "{a vis 0}");
+    let found = nuke(&layer, &footage(), 4).unwrap();
+    assert!(found.shapes.is_empty() && found.warnings[0].contains("its layer is invisible"), "{:?}", found.warnings);
 }

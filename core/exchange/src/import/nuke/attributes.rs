@@ -1,0 +1,35 @@
+//! Attributes of a shape or a layer.
+//!
+//! A list `a` has names, each followed by its value. Blending modes (`bm`) are numbers: 0 lays a shape over those below, 4 takes
+//! the greater of both, 5 keeps what is inside of both, 12 subtracts, 13 takes the difference.
+//!
+//! Source: M. Borgo's exporter for Silhouette (NukeFXSExporter) names these modes; the other numbers are not public.
+
+use super::number::{channel, number};
+use super::words::Item;
+
+/// The value of an attribute.
+pub(super) fn attribute<'a>(item: &'a Item<'a>, name: &str) -> Option<&'a Item<'a>> {
+    let attributes = item.items().iter().filter(|list| list.name() == Some("a")).flat_map(Item::items);
+    attributes.skip_while(|word| word.word() != Some(name)).nth(1)
+}
+
+/// Whether a shape or a layer is invisible on all frames.
+pub(super) fn is_invisible(text: &str, item: &Item) -> bool {
+    attribute(item, "vis").and_then(|value| channel(text, value, "a").ok()).is_some_and(|visible| visible.is(0.0))
+}
+
+/// What a shape does beside adding its area to those below, in words; `None` for nothing.
+pub(super) fn lost(text: &str, item: &Item) -> Option<String> {
+    let inverted = attribute(item, "inv").and_then(|value| channel(text, value, "a").ok());
+    let inverted = inverted.is_some_and(|inverted| !inverted.is(0.0)).then(|| "is inverted".to_owned());
+    let blended = match attribute(item, "bm").and_then(|value| number(text, value, "a").ok()).unwrap_or(0.0) {
+        // The greatest of several coverages and their sum have the same outline.
+        0.0 | 4.0 => None,
+        5.0 => Some("keeps only what is inside of it".to_owned()),
+        12.0 => Some("subtracts its area".to_owned()),
+        mode => Some(format!("has the blending mode {mode}")),
+    };
+    let told: Vec<String> = inverted.into_iter().chain(blended).collect();
+    (!told.is_empty()).then(|| told.join(" and "))
+}
