@@ -3,6 +3,9 @@
 //! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
+//! - `svg_outline`: outlines of elements
+//! - `svg_style`: what is hidden or filled
+//! - `svg_view`: view boxes
 //! - [`silhouette`]: Silhouette shapes
 //! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
 //! - [`natron`](mod@natron): shapes of Natron's Roto and RotoPaint nodes
@@ -29,6 +32,9 @@ mod range;
 pub mod silhouette;
 pub mod svg;
 mod svg_animation;
+mod svg_outline;
+mod svg_style;
+mod svg_view;
 
 pub use problem::{ImportError, Place};
 

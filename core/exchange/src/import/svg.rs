@@ -7,31 +7,39 @@
 //! If a path has a SMIL animation of its `d` (`svg_animation`), as written by the export, its shape has a key wherever
 //! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives.
 //!
+//! A path that is filled is closed, even if its data do not close it. What is hidden on all frames is left out with a warning
+//! (`svg_style`). A nested `svg` has a view box of its own (`svg_view`).
+//!
 //! The export writes painted regions and strokes too, which are no contours of parts: a region has another outline on
 //! every frame. They are left out, and one warning counts them. If there is nothing else, each stroke is a shape. Their ids and titles tell them (`"stroke-7"` and `stroke 7`).
 //!
 //! Limits: content that is not drawn in place (definitions, clips, masks, patterns, symbols) is ignored. Text, pictures
-//! and `use` are left out with a warning. Nesting, coordinates and points are bounded (`limits`).
+//! and `use` are left out with a warning, and so are animations of transformations. Nesting, coordinates and points are bounded (`limits`).
 
-use super::limits::{FARTHEST, Points, near};
+use super::limits::{Points, near};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
-use super::problem::{LeftOut, number, parsed, quoted};
+use super::problem::{LeftOut, parsed, quoted};
 use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
+use super::svg_outline::{outline, paths};
+use super::svg_style::Styles;
+use super::svg_view::{View, nested, viewed};
 use super::{ImportError, Shape, Shapes};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use std::str::FromStr;
-use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser, Transform, ViewBox};
+use svgtypes::Transform;
 
 /// Elements whose content is not drawn in place.
 const NOT_DRAWN: [&str; 9] =
     ["defs", "clipPath", "mask", "pattern", "symbol", "marker", "linearGradient", "radialGradient", "filter"];
+/// Elements that contain others.
+const GROUPS: [&str; 4] = ["g", "a", "svg", "switch"];
+/// Elements that have an outline.
+const SHAPES: [&str; 7] = ["path", "polygon", "polyline", "line", "circle", "ellipse", "rect"];
 /// Elements that are drawn but have no outline here.
 const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignObject"];
-/// Greatest relative difference between the aspect ratios of document and footage.
-const PROPORTIONS: f64 = 0.005;
 
 /// Reads the shapes of an SVG document for footage. A shape without animation gets its key on frame `still`. Points are
 /// converted to pixels of the footage.
@@ -45,10 +53,11 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     if root.tag_name().name() != "svg" {
         return Err(ImportError::at(root, "expected <svg>, the root of an SVG document"));
     }
-    let over = laid_over(root, footage)?;
+    let (view, over) = viewed(root, footage)?;
+    let styles = Styles::of(&document);
     let read = |strokes| {
-        let mut reader = Reader::new(footage, still, strokes);
-        reader.group(root, over).map(|()| reader)
+        let mut reader = Reader::new(footage, still, strokes, &styles);
+        reader.group(root, &view, over).map(|()| reader)
     };
     let mut reader = read(false)?;
     if reader.shapes.is_empty() && reader.drawn.strokes > 0 {
@@ -86,41 +95,9 @@ impl Drawn {
     }
 }
 
-/// The transformation from units of the document to pixels of the footage.
-fn laid_over(root: Node, footage: &Footage) -> Result<Transform, ImportError> {
-    let view = match root.attribute("viewBox") {
-        Some(text) => ViewBox::from_str(text).map_err(|error| {
-            ImportError::at(root, format!("viewBox: found {text:?}, expected four numbers ({error})"))
-        })?,
-        None => match (pixels(root, "width")?, pixels(root, "height")?) {
-            (Some(width), Some(height)) => ViewBox::new(0.0, 0.0, width, height),
-            _ => ViewBox::new(0.0, 0.0, footage.width as f64, footage.height as f64),
-        },
-    };
-    let (x, y) = (footage.width as f64 / view.w, footage.height as f64 / view.h);
-    if !(x > 0.0 && y > 0.0) || (x / y - 1.0).abs() > PROPORTIONS {
-        let (width, height) = (footage.width, footage.height);
-        let message =
-            format!("found a picture of {}x{}, expected the footage's proportions, {width}x{height}", view.w, view.h);
-        return Err(ImportError::at(root, message));
-    }
-    Ok(Transform::new(x, 0.0, 0.0, y, -view.x * x, -view.y * y))
-}
-
-/// A length in pixels; `None` if the attribute is missing or a percentage.
-fn pixels(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
-    let Some(text) = node.attribute(name) else { return Ok(None) };
-    let text = text.trim();
-    let plain = text.strip_suffix("px").unwrap_or(text);
-    match plain.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
-        _ if text.ends_with('%') => Ok(None),
-        _ => Err(ImportError::at(node, format!("{name}: found {text:?}, expected pixels"))),
-    }
-}
-
 struct Reader<'a> {
     footage: &'a Footage,
+    styles: &'a Styles,
     still: FrameNumber,
     shapes: Vec<Shape>,
     names: Names,
@@ -132,9 +109,10 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(footage: &'a Footage, still: FrameNumber, strokes: bool) -> Self {
+    fn new(footage: &'a Footage, still: FrameNumber, strokes: bool, styles: &'a Styles) -> Self {
         Self {
             footage,
+            styles,
             still,
             shapes: Vec::new(),
             names: Names::default(),
@@ -145,55 +123,83 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn group(&mut self, node: Node, outer: Transform) -> Result<(), ImportError> {
+    fn group(&mut self, node: Node, view: &View, outer: Transform) -> Result<(), ImportError> {
         for child in node.children().filter(Node::is_element) {
             let name = child.tag_name().name();
-            if NOT_DRAWN.contains(&name) || hidden(child) {
+            if NOT_DRAWN.contains(&name) || self.is_left_out(child) {
                 continue;
             }
-            match drawn(child) {
-                Some(Written::Region) => {
-                    self.drawn.regions += 1;
-                    continue;
-                }
-                Some(Written::Stroke) if !self.strokes => {
-                    self.drawn.strokes += 1;
-                    continue;
-                }
-                _ => {}
-            }
-            if WITHOUT_OUTLINE.contains(&name) {
-                self.left_out.push(child, format!("<{name}> has no outline here and is left out"));
-                continue;
-            }
-            let inner = joined(outer, own_transform(child)?);
+            let inner = joined(outer, self.own_transform(child)?);
             match outline(child)? {
                 Some(text) => self.shape(child, &text, inner)?,
-                None if ["g", "a", "svg", "switch"].contains(&name) => self.group(child, inner)?,
+                None if name == "svg" => {
+                    let (view, within) = nested(child, view)?;
+                    self.group(child, &view, joined(inner, within))?;
+                }
+                None if ["g", "a", "switch"].contains(&name) => self.group(child, view, inner)?,
                 None => {}
             }
         }
         Ok(())
     }
 
+    /// Whether an element is left out, which is told.
+    fn is_left_out(&mut self, node: Node) -> bool {
+        match drawn(node) {
+            Some(Written::Region) => {
+                self.drawn.regions += 1;
+                return true;
+            }
+            Some(Written::Stroke) if !self.strokes => {
+                self.drawn.strokes += 1;
+                return true;
+            }
+            _ => {}
+        }
+        let element = node.tag_name().name();
+        if WITHOUT_OUTLINE.contains(&element) {
+            self.left_out.push(node, format!("<{element}> has no outline here and is left out"));
+            return true;
+        }
+        let group = GROUPS.contains(&element);
+        let invisible = || (!group && self.styles.is_invisible(node)).then_some("visibility: hidden");
+        let Some(reason) = self.styles.hides(node).or_else(invisible) else { return false };
+        if group || SHAPES.contains(&element) {
+            self.left_out.push(node, format!("the hidden <{element}> {:?} is left out ({reason})", name(node)));
+        }
+        true
+    }
+
+    /// The transformation of an element. One that moves is not read, which is told.
+    fn own_transform(&mut self, node: Node) -> Result<Transform, ImportError> {
+        let moves = |child: &Node| ["animateTransform", "animateMotion"].contains(&child.tag_name().name());
+        if node.children().any(|child| moves(&child)) {
+            let told =
+                format!("{:?} moves by an animated transformation, which is not read: it stands still", name(node));
+            self.left_out.push(node, told);
+        }
+        let Some(text) = self.styles.transform(node) else { return Ok(Transform::default()) };
+        Transform::from_str(&text).map_err(|error| {
+            let found = quoted(Some(&text));
+            ImportError::at(node, format!("transform: found {found}, expected transformations ({error})"))
+        })
+    }
+
     fn shape(&mut self, node: Node, text: &str, transform: Transform) -> Result<(), ImportError> {
         let keys = match keyed(node, self.footage)? {
-            Some(keys) => keys,
-            None => vec![Keyed { frame: self.still, text: text.to_owned() }],
+            Some(found) => {
+                if let Some(told) = found.kept.told(&name(node), self.footage) {
+                    self.left_out.push(node, told);
+                }
+                found.keys
+            }
+            None => vec![Keyed { frame: self.still, text: text.to_owned(), toward: None }],
         };
         // A part that was exported before it was tracked is there between its keys.
         let keys_only = node.attribute("data-keys") == Some("only");
         let hidden = if keys_only { Vec::new() } else { hidden_times(node, self.footage) };
-        let mut frames = Vec::new();
-        for key in &keys {
-            let mut paths = paths(node, &key.text, &mut self.points)?;
-            for path in &mut paths {
-                for p in path.points_mut() {
-                    *p = near(moved(*p, transform), node)?;
-                }
-            }
-            frames.push((key.frame, paths));
-        }
+        let frames = keys.iter().map(|key| Ok((key.frame, self.placed(node, key, transform)?)));
+        let frames = frames.collect::<Result<Vec<_>, ImportError>>()?;
         let Some((first, start)) = frames.first() else { return Ok(()) };
         for number in 0..start.len() {
             let own: Vec<Path> = frames.iter().filter_map(|(_, paths)| paths.get(number).cloned()).collect();
@@ -217,6 +223,26 @@ impl<'a> Reader<'a> {
         }
         Ok(())
     }
+
+    /// The sub-paths of a key, in pixels of the footage.
+    fn placed(&mut self, node: Node, key: &Keyed, transform: Transform) -> Result<Vec<Path>, ImportError> {
+        let mut own = paths(node, &key.text, &mut self.points)?;
+        // A fill joins the end of an open path to its start.
+        if node.tag_name().name() != "line" && self.styles.is_filled(node) {
+            own.iter_mut().filter(|path| !path.closed && path.segments.len() > 1).for_each(Path::close);
+        }
+        if let Some((text, share)) = &key.toward {
+            let to = paths(node, text, &mut self.points)?;
+            // Paths that are built differently are refused with the keys before them.
+            for (path, to) in own.iter_mut().zip(&to) {
+                path.go(to, *share);
+            }
+        }
+        for p in own.iter_mut().flat_map(Path::points_mut) {
+            *p = near(moved(*p, transform), node)?;
+        }
+        Ok(own)
+    }
 }
 
 /// What an export writes beside the contours of parts.
@@ -239,11 +265,6 @@ fn drawn(node: Node) -> Option<Written> {
     }
 }
 
-fn hidden(node: Node) -> bool {
-    let style = node.attribute("style").unwrap_or("").replace(' ', "");
-    node.attribute("display") == Some("none") || style.contains("display:none")
-}
-
 fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text())
 }
@@ -251,13 +272,6 @@ fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
 fn name(node: Node) -> String {
     let label = || node.attributes().find(|attribute| attribute.name() == "label").map(|attribute| attribute.value());
     title(node).or_else(label).or_else(|| node.attribute("id")).unwrap_or("").to_owned()
-}
-
-fn own_transform(node: Node) -> Result<Transform, ImportError> {
-    let Some(text) = node.attribute("transform") else { return Ok(Transform::default()) };
-    Transform::from_str(text).map_err(|error| {
-        ImportError::at(node, format!("transform: found {}, expected transformations ({error})", quoted(Some(text))))
-    })
 }
 
 /// The transformation that applies `inner` first, then `outer`.
@@ -275,113 +289,6 @@ fn joined(outer: Transform, inner: Transform) -> Transform {
 
 fn moved(p: Point, t: Transform) -> Point {
     Point::new(t.a * p.x + t.c * p.y + t.e, t.b * p.x + t.d * p.y + t.f)
-}
-
-/// The path data of a shape element; `None` for other elements.
-fn outline(node: Node) -> Result<Option<String>, ImportError> {
-    let value = |name: &str| number(node, name).map(Option::unwrap_or_default);
-    let positive = |name: &str| match number(node, name)? {
-        Some(value) if value >= 0.0 => Ok(value),
-        _ => {
-            let found = quoted(node.attribute(name));
-            Err(ImportError::at(node, format!("{name}: found {found}, expected a number from 0")))
-        }
-    };
-    Ok(Some(match node.tag_name().name() {
-        "path" => node.attribute("d").unwrap_or("").to_owned(),
-        "polygon" => listed(node)? + "Z",
-        "polyline" => listed(node)?,
-        "line" => format!("M{} {}L{} {}", value("x1")?, value("y1")?, value("x2")?, value("y2")?),
-        "circle" => ellipse(value("cx")?, value("cy")?, positive("r")?, positive("r")?),
-        "ellipse" => ellipse(value("cx")?, value("cy")?, positive("rx")?, positive("ry")?),
-        "rect" => {
-            let (width, height) = (positive("width")?, positive("height")?);
-            let (rx, ry) = (number(node, "rx")?, number(node, "ry")?);
-            let round =
-                |own: Option<f64>, other: Option<f64>, size: f64| own.or(other).unwrap_or(0.0).clamp(0.0, 0.5 * size);
-            rectangle([value("x")?, value("y")?], [width, height], [round(rx, ry, width), round(ry, rx, height)])
-        }
-        _ => return Ok(None),
-    }))
-}
-
-fn listed(node: Node) -> Result<String, ImportError> {
-    let text = node.attribute("points").unwrap_or("");
-    let points: Vec<_> = PointsParser::from(text).map(|(x, y)| format!("{x} {y}")).collect();
-    let numbers = text.split([' ', ',', '\t', '\n', '\r']).filter(|part| !part.is_empty()).count();
-    if points.is_empty() || numbers % 2 != 0 {
-        return Err(ImportError::at(node, format!("points: found {}, expected pairs of numbers", quoted(Some(text)))));
-    }
-    Ok(format!("M{}", points.join(" ")))
-}
-
-fn ellipse(x: f64, y: f64, rx: f64, ry: f64) -> String {
-    format!("M{} {y}A{rx} {ry} 0 0 1 {} {y}A{rx} {ry} 0 0 1 {} {y}Z", x + rx, x - rx, x + rx)
-}
-
-fn rectangle([x, y]: [f64; 2], [width, height]: [f64; 2], [rx, ry]: [f64; 2]) -> String {
-    if rx == 0.0 || ry == 0.0 {
-        return format!("M{x} {y}h{width}v{height}h{}Z", -width);
-    }
-    let (along, down) = (width - 2.0 * rx, height - 2.0 * ry);
-    let corner = |dx: f64, dy: f64| format!("a{rx} {ry} 0 0 1 {dx} {dy}");
-    let (a, b, c, d) = (corner(rx, ry), corner(-rx, ry), corner(-rx, -ry), corner(rx, -ry));
-    format!("M{} {y}h{along}{a}v{down}{b}h{}{c}v{}{d}Z", x + rx, -along, -down)
-}
-
-/// Requires that the numbers of path data are within [`FARTHEST`]. The parser makes more curves of an arc, the larger
-/// its radius is, so this is asked before.
-fn bounded(node: Node, text: &str) -> Result<(), ImportError> {
-    // Text that is no path data gets its error from the parser that makes curves.
-    for segment in PathParser::from(text).map_while(Result::ok) {
-        let numbers = match segment {
-            PathSegment::MoveTo { x, y, .. } | PathSegment::LineTo { x, y, .. } => [x, y, 0.0, 0.0, 0.0, 0.0],
-            PathSegment::HorizontalLineTo { x, .. } => [x, 0.0, 0.0, 0.0, 0.0, 0.0],
-            PathSegment::VerticalLineTo { y, .. } => [0.0, y, 0.0, 0.0, 0.0, 0.0],
-            PathSegment::CurveTo { x1, y1, x2, y2, x, y, .. } => [x1, y1, x2, y2, x, y],
-            PathSegment::SmoothCurveTo { x2, y2, x, y, .. } => [x2, y2, x, y, 0.0, 0.0],
-            PathSegment::Quadratic { x1, y1, x, y, .. } => [x1, y1, x, y, 0.0, 0.0],
-            PathSegment::SmoothQuadratic { x, y, .. } => [x, y, 0.0, 0.0, 0.0, 0.0],
-            PathSegment::EllipticalArc { rx, ry, x_axis_rotation, x, y, .. } => [rx, ry, x_axis_rotation, x, y, 0.0],
-            PathSegment::ClosePath { .. } => [0.0; 6],
-        };
-        if let Some(far) = numbers.into_iter().find(|number| number.is_nan() || number.abs() > FARTHEST) {
-            let message = format!("d: found {far:e}, expected numbers from {:e} to {FARTHEST:e}", -FARTHEST);
-            return Err(ImportError::at(node, message));
-        }
-    }
-    Ok(())
-}
-
-/// The sub-paths of path data that have segments.
-fn paths(node: Node, text: &str, points: &mut Points) -> Result<Vec<Path>, ImportError> {
-    bounded(node, text)?;
-    let mut paths: Vec<Path> = Vec::new();
-    for segment in SimplifyingPathParser::from(text) {
-        let segment = segment.map_err(|error| {
-            ImportError::at(node, format!("d: found {}, expected path data ({error})", quoted(Some(text))))
-        })?;
-        points.take(1, node)?;
-        if let SimplePathSegment::MoveTo { x, y } = segment {
-            paths.push(Path::new(Point::new(x, y)));
-            continue;
-        }
-        let Some(path) = paths.last_mut() else { continue };
-        match segment {
-            SimplePathSegment::LineTo { x, y } => path.line(Point::new(x, y)),
-            SimplePathSegment::CurveTo { x1, y1, x2, y2, x, y } => {
-                path.cubic(Point::new(x1, y1), Point::new(x2, y2), Point::new(x, y));
-            }
-            SimplePathSegment::Quadratic { x1, y1, x, y } => {
-                let (from, middle, to) = (path.end(), Point::new(x1, y1), Point::new(x, y));
-                path.cubic(from.lerp(middle, 2.0 / 3.0), to.lerp(middle, 2.0 / 3.0), to);
-            }
-            SimplePathSegment::ClosePath => path.close(),
-            SimplePathSegment::MoveTo { .. } => {}
-        }
-    }
-    paths.retain(|path| !path.segments.is_empty());
-    Ok(paths)
 }
 
 #[cfg(test)]
@@ -444,9 +351,9 @@ mod tests {
         let area = |index: usize| polygon::signed_area(&found.shapes[index].keys[&6]).abs();
         let names: Vec<_> = found.shapes.iter().map(|shape| (shape.name.as_str(), shape.closed)).collect();
         let expected =
-            [("r", true), ("disc", true), ("shape", true), ("shape 2", true), ("shape 3", false), ("shape 4", false)];
+            [("r", true), ("disc", true), ("shape", true), ("shape 2", true), ("shape 3", false), ("shape 4", true)];
         assert_eq!(names[..6], expected);
-        assert_eq!(names[6..], [("shape 5", true), ("r 2", false), ("r 3", true)]);
+        assert_eq!(names[6..], [("shape 5", true), ("r 2", false), ("r 3", true)], "a path of one segment has no area");
         assert_eq!(
             found.shapes[0].keys[&6],
             [(0.0, 0.0), (40.0, 0.0), (40.0, 20.0), (0.0, 20.0)].map(|(x, y)| Point::new(x, y))
@@ -461,7 +368,67 @@ mod tests {
     fn what_has_no_outline_is_told_and_left_out() {
         let found = read("<path d=\"M0 0h5\"/>\n<text>a</text><g display=\"none\"><path d=\"M0 0h5\"/></g>").unwrap();
         assert_eq!(found.shapes.len(), 1);
-        assert_eq!(found.warnings, ["line 2, column 1: <text> has no outline here and is left out"]);
+        let told = [
+            "line 2, column 1: <text> has no outline here and is left out",
+            "line 2, column 15: the hidden <g> \"\" is left out (display: none)",
+        ];
+        assert_eq!(found.warnings, told);
+    }
+
+    #[test]
+    fn what_is_hidden_is_told_and_left_out() {
+        let shown = "<path id='shown' d='M0 0h5v5'/>";
+        for (hidden, said) in [
+            (
+                "<path id='a' visibility='hidden' d='M0 0h5'/>",
+                "the hidden <path> \"a\" is left out (visibility: hidden)",
+            ),
+            ("<g id='a' opacity='0'><path d='M0 0h5'/></g>", "the hidden <g> \"a\" is left out (opacity: 0)"),
+            (
+                "<style>.h{display:none}</style><path id='a' class='h' d='M0 0h5'/>",
+                "<path> \"a\" is left out (display: none)",
+            ),
+            (
+                "<g visibility='hidden'><rect id='a' width='5' height='5'/></g>",
+                "<rect> \"a\" is left out (visibility: hidden)",
+            ),
+        ] {
+            let found = read(&(hidden.to_owned() + shown)).unwrap();
+            assert_eq!((found.shapes.len(), found.shapes[0].name.as_str()), (1, "shown"));
+            assert!(found.warnings.len() == 1 && found.warnings[0].contains(said), "{:?}", found.warnings);
+        }
+        let moves = "<path id='a' d='M0 0h5v5'><animateTransform attributeName='transform' type='translate' values='0 0;9 9' dur='1s'/></path>";
+        let found = read(moves).unwrap();
+        assert!(found.shapes.len() == 1 && found.warnings[0].contains("\"a\" moves by an animated transformation"));
+    }
+
+    #[test]
+    fn a_fill_closes_a_path() {
+        let closed = |path: &str| read(path).unwrap().shapes[0].closed;
+        assert!(closed("<path fill='#f00' d='M0 0h5v5'/>") && closed("<path d='M0 0h5v5'/>"));
+        assert!(
+            !closed("<path fill='none' d='M0 0h5v5'/>") && !closed("<g style='fill:none'><path d='M0 0h5v5'/></g>")
+        );
+        let found = read("<path d='M0 0h5v5'/>").unwrap();
+        assert_eq!(found.shapes[0].keys[&6].len(), 3);
+    }
+
+    #[test]
+    fn nested_documents_and_css_have_their_places() {
+        let start = |content: &str| read(content).unwrap().shapes[0].keys[&6][0] * 0.5 + Point::new(10.0, 0.0);
+        let nested =
+            |more: &str| format!("<svg x='30' y='10' width='40' height='20' {more}><path d='M2 3h5v5'/></svg>");
+        assert_eq!(start(&nested("")), Point::new(32.0, 13.0));
+        assert_eq!(start(&nested("viewBox='0 0 80 40'")), Point::new(31.0, 11.5));
+        assert_eq!(start(&nested("viewBox='1 0 20 20'")), Point::new(30.0 + 10.0 + 1.0, 13.0));
+        assert_eq!(start(&nested("viewBox='0 0 20 20' preserveAspectRatio='none'")), Point::new(34.0, 13.0));
+        assert_eq!(
+            start(&nested("viewBox='0 0 20 20' preserveAspectRatio='xMinYMax slice'")),
+            Point::new(34.0, 10.0 - 20.0 + 6.0)
+        );
+        let all = "<svg viewBox='0 0 50 25'><path d='M2 3h5v5'/></svg>";
+        assert_eq!(start(all), Point::new(4.0, 6.0), "as large as what is around it");
+        assert_eq!(start("<path style='transform:translate(20px,4px)' d='M2 3h5v5'/>"), Point::new(22.0, 7.0));
     }
 
     #[test]

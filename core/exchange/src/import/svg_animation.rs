@@ -5,12 +5,14 @@
 //! on the frame nearest to its time. An `animate` element of `visibility` removes the keys of hidden frames. What it
 //! hides, or an `animate` element of `opacity`, is hidden.
 //!
-//! Limits: an animation starts on the first frame of the footage, and repeats are ignored. The value at the very end of
-//! an animation is left out, since it is one frame after the footage.
+//! Limits: an animation starts on the first frame of the footage, and repeats are ignored. Values after the last frame of the
+//! footage are left out (`range`). A form that moves to one of them has a key on the last frame, on its way there. The value at
+//! the very end of an animation as long as the footage is such a value too: it is one frame after the footage.
 
 use super::ImportError;
 use super::channel::Channel;
 use super::problem::quoted;
+use super::range::Kept;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 
@@ -18,12 +20,23 @@ use roxmltree::Node;
 const HIDING: [&str; 2] = ["hidden", "collapse"];
 
 /// Path data on a frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Keyed {
     /// The frame.
     pub frame: FrameNumber,
     /// The path data.
     pub text: String,
+    /// The path data that it moves to, and the share of the way that it has come.
+    pub toward: Option<(String, f64)>,
+}
+
+/// The keys of an animation.
+#[derive(Debug)]
+pub(super) struct Keys {
+    /// Those within the footage.
+    pub keys: Vec<Keyed>,
+    /// All of them.
+    pub kept: Kept,
 }
 
 /// An animation: its values with the frames on which they begin, counted from the first frame of the footage.
@@ -33,20 +46,32 @@ struct Animation<'a> {
 }
 
 /// The keys of an element's path data; `None` if it is not animated.
-pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Vec<Keyed>>, ImportError> {
+pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Keys>, ImportError> {
     let Some(data) = animation(node, "d", footage)? else { return Ok(None) };
     let visibility = animation(node, "visibility", footage)?;
     let count = i64::from(footage.last) - i64::from(footage.first) + 1;
+    let key = |frame: i64, value: usize, toward| Keyed {
+        frame: (frame + i64::from(footage.first)) as FrameNumber,
+        text: data.values[value].1.to_owned(),
+        toward,
+    };
     let mut keys = Vec::new();
     for Run { value, first, last } in runs(&data, visibility.as_ref(), count) {
-        let (start, text) = data.values[value];
+        let start = data.values[value].0;
         let mut frames = if data.held { vec![first, last] } else { vec![start] };
         frames.retain(|frame| (first..=last).contains(frame));
         frames.dedup();
-        let key = |frame| Keyed { frame: (frame + i64::from(footage.first)) as FrameNumber, text: text.to_owned() };
-        keys.extend(frames.into_iter().map(key));
+        keys.extend(frames.into_iter().map(|frame| key(frame, value, None)));
+        if let Some((next, to)) = data.values.get(value + 1).filter(|_| !data.held && start < last && last + 1 == count)
+        {
+            let share = (last - start) as f64 / (next - start) as f64;
+            keys.push(key(last, value, Some(((*to).to_owned(), share))));
+        }
     }
-    Ok(Some(keys))
+    let end = |time: &i64| !data.held && *time == count;
+    let times = data.values.iter().map(|(start, _)| *start).filter(|time| !end(time));
+    let kept = Kept::of(times.map(|time| time as f64 + f64::from(footage.first)), footage);
+    Ok(Some(Keys { keys, kept }))
 }
 
 /// The times in which an element is not shown. An animation that cannot be read hides nothing.
@@ -106,7 +131,9 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
     let list = |name: &str| {
         animate.attribute(name).map(|text| text.trim().trim_end_matches(';').split(';').map(str::trim).collect())
     };
-    let values: Vec<&str> = list("values").ok_or_else(|| expect("values", "values separated by semicolons"))?;
+    let ends = || Some(vec![animate.attribute("from")?.trim(), animate.attribute("to")?.trim()]);
+    let values: Vec<&str> =
+        list("values").or_else(ends).ok_or_else(|| expect("values", "values separated by semicolons"))?;
     let seconds =
         seconds(animate.attribute("dur").unwrap_or("")).ok_or_else(|| expect("dur", "seconds such as 2.5s"))?;
     let held = animate.attribute("calcMode") == Some("discrete");
@@ -123,10 +150,6 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
         }
     };
     let frames = seconds * footage.fps;
-    let count = i64::from(footage.last) - i64::from(footage.first) + 1;
-    if frames.round() as i64 > count {
-        return Err(expect("dur", &format!("at most the footage's {count} frames at {} a second", footage.fps)));
-    }
     let values = times.iter().map(|time| (time * frames).round() as i64).zip(values).collect();
     Ok(Some(Animation { values, held }))
 }
@@ -150,8 +173,14 @@ mod tests {
         let footage = Footage { pattern: "%d".into(), first: 5, last: 14, fps: 10.0, width: 20, height: 10 };
         let text = format!("<path>{animations}</path>");
         let document = roxmltree::Document::parse(&text).unwrap();
-        let keys = keyed(document.root_element(), &footage)?;
-        Ok(keys.unwrap_or_default().into_iter().map(|key| (key.frame, key.text)).collect())
+        let Some(found) = keyed(document.root_element(), &footage)? else { return Ok(Vec::new()) };
+        let text = |key: Keyed| match key.toward {
+            Some((to, share)) => format!("{} {share:.2} {to}", key.text),
+            None => key.text,
+        };
+        let mut keys: Vec<_> = found.keys.into_iter().map(|key| (key.frame, text(key))).collect();
+        keys.extend(found.kept.told("a", &footage).map(|told| (0, told)));
+        Ok(keys)
     }
 
     fn expected(keys: &[(FrameNumber, &str)]) -> Vec<(FrameNumber, String)> {
@@ -177,15 +206,26 @@ mod tests {
     #[test]
     fn moving_values_have_keys_at_their_times() {
         let found = keys("<animate attributeName='d' dur='1' values='a;b;c'/>").unwrap();
-        assert_eq!(found, expected(&[(5, "a"), (10, "b")]));
+        assert_eq!(found, expected(&[(5, "a"), (10, "b"), (14, "b 0.80 c")]));
+        let found = keys("<animate attributeName='d' dur='1' from='a' to='b'/>").unwrap();
+        assert_eq!(found, expected(&[(5, "a"), (14, "a 0.90 b")]));
         assert!(keys("<animate attributeName='fill' dur='1' values='a'/>").unwrap().is_empty());
+    }
+
+    #[test]
+    fn values_beyond_the_footage_are_told() {
+        let found = keys("<animate attributeName='d' dur='4s' values='a;b;c'/>").unwrap();
+        assert_eq!(found[..2], expected(&[(5, "a"), (14, "a 0.45 b")]));
+        assert!(found[2].1.contains("has 2 keys on frames 25 to 45, beyond the footage's frames 5 to 14"), "{found:?}");
+        let found = keys(&HELD.replace("1s", "3s")).unwrap();
+        assert_eq!(found[..3], expected(&[(5, "a"), (13, "a"), (14, "b")]));
+        assert!(found[3].1.contains("has a key on frame 17,"), "{found:?}");
     }
 
     #[test]
     fn errors_say_what_was_expected() {
         for (from, to, message) in [
             ("1s", "soon", "dur: found \"soon\", expected seconds"),
-            ("1s", "3s", "at most the footage's 10 frames at 10 a second"),
             ("0;0.3", "0.5;0.3", "expected 3 rising numbers from 0 to 1"),
             ("values", "to", "values: found nothing"),
         ] {
