@@ -235,7 +235,7 @@ pub fn export_silhouette(document: &Document, spacing: f64) -> String {
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
 /// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
-/// such a feather, and some lack characters of names: `extension`, in small letters, names the form.
+/// such a feather, and some lack characters of names. In SVG a stroke has one width along it. `extension`, in small letters, names the form.
 pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String> {
     let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
     let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
@@ -248,7 +248,8 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
     let renamed = export::renamed(&document.scene, extension);
     let renamed: Vec<String> = renamed.into_iter().map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
     let names = (!renamed.is_empty()).then(|| format!("the file cannot have some names: {}", renamed.join(", ")));
-    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).collect();
+    let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
+    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(varying).collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
 

@@ -10,11 +10,16 @@ use crate::project::drawings::DrawnStroke;
 use crate::project::traced::TracedStroke;
 use crate::scene::FrameNumber;
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// Width of a stroke without widths, in pixels of 540 lines.
 const PLAIN: f64 = 2.0;
+
+/// Widths that differ less are written as one, in pixels.
+const ROUNDING: f64 = 0.005;
+/// A stroke whose width differs by more than this share from its mean somewhere is told as one of varying width.
+const VARIES: f64 = 0.1;
 
 /// Which stroke it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -97,17 +102,22 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
     let mut found: BTreeMap<Id, SvgStroke> = BTreeMap::new();
     for (frame, own) in strokes(document)?.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s)))
     {
+        let width = mean(&own.stroke.widths).unwrap_or(plain);
         let known = found.entry(own.id).or_insert_with(|| SvgStroke {
             name: own.id.to_string(),
             points: BTreeMap::new(),
             opacities: BTreeMap::new(),
             closed: own.stroke.closed,
-            width: mean(&own.stroke.widths).unwrap_or(plain),
+            width,
+            widths: BTreeMap::new(),
             colour: own.stroke.colour.unwrap_or_default(),
             fill: own.stroke.fill,
             lined: own.is_lined(),
         });
         known.points.insert(frame, own.stroke.points);
+        if (width - known.width).abs() > ROUNDING {
+            known.widths.insert(frame, width);
+        }
         if own.opacity < 1.0 {
             known.opacities.insert(frame, own.opacity);
         }
@@ -116,6 +126,21 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
     let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
     found.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
     Ok(found)
+}
+
+/// Says how many strokes have a width that varies along them, of which an SVG file has the mean; `None` if there are none.
+pub(super) fn varying(document: &Document) -> Option<String> {
+    let mut found: BTreeSet<Id> = BTreeSet::new();
+    for own in strokes(document).ok()?.into_values().flatten() {
+        let Some(mean) = mean(&own.stroke.widths) else { continue };
+        if own.stroke.widths.iter().any(|width| (width - mean).abs() > VARIES * mean) {
+            found.insert(own.id);
+        }
+    }
+    let first = found.first()?;
+    let count = found.len();
+    let which = if count == 1 { format!("{first} has") } else { format!("{count} strokes such as {first} have") };
+    Some(format!("{which} a width that varies along the line: the file has the mean of each frame"))
 }
 
 /// Width in pixels of a stroke without widths.

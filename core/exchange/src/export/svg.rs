@@ -72,6 +72,8 @@ pub struct SvgStroke {
     pub closed: bool,
     /// Its width in pixels.
     pub width: f64,
+    /// Its width in pixels on frames on which it is another one.
+    pub widths: BTreeMap<FrameNumber, f64>,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
     /// Whether what is inside is filled with the colour.
@@ -131,7 +133,7 @@ fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: 
     let keys = if part.tracks.is_empty() && part.keys.len() > 1 { format!(" {KEYS_ONLY}") } else { String::new() };
     let style =
         format!("id=\"part-{index}\"{keys} fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
-    path(out, scene, &style, (&escaped(name), &BTreeMap::new()), options.motion, shape);
+    path(out, scene, &style, (&escaped(name), &BTreeMap::new(), ""), options.motion, shape);
 }
 
 fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
@@ -141,7 +143,7 @@ fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
     };
     let (track, colour) = (fill.track, palette::hex(fill.colour));
     let style = format!("id=\"fill-{track}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"none\"");
-    path(out, scene, &style, (&format!("region {track}"), &BTreeMap::new()), Motion::Hold, shape);
+    path(out, scene, &style, (&format!("region {track}"), &BTreeMap::new(), ""), Motion::Hold, shape);
 }
 
 fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
@@ -159,21 +161,39 @@ fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOpti
         false => "stroke=\"none\"".into(),
     };
     let style = format!("id=\"{id}\" fill=\"{fill}\" {line}");
-    path(out, scene, &style, (&stroke.name, &stroke.opacities), options.motion, shape);
+    let widths = if stroke.lined { widths(scene, stroke, options.motion) } else { String::new() };
+    path(out, scene, &style, (&stroke.name, &stroke.opacities, &widths), options.motion, shape);
 }
 
-/// A path with its title, its opacities other than 1, and its animation. `shape` gives its data on a frame.
+/// The animation of a stroke's width; none if it is always the same. Where the stroke is not, its width is the one before, or the first.
+fn widths(scene: &Scene, stroke: &SvgStroke, motion: Motion) -> String {
+    if stroke.widths.is_empty() {
+        return String::new();
+    }
+    let on = |frame| stroke.points.contains_key(&frame).then(|| *stroke.widths.get(&frame).unwrap_or(&stroke.width));
+    let frames = scene.footage.first..=scene.footage.last;
+    let all: Vec<Option<String>> = frames.map(|frame| Some(decimal(on(frame)?, 2).to_string())).collect();
+    let Some(first) = all.iter().flatten().next() else { return String::new() };
+    let mut out = String::new();
+    let seconds = all.len() as f64 / scene.footage.fps;
+    animate(&mut out, "stroke-width", seconds, motion, &nearest(&all, first));
+    out
+}
+
+/// A path with its title, its opacities other than 1, other animations, and its animation. `shape` gives its data on a frame.
 fn path(
     out: &mut String,
     scene: &Scene,
     style: &str,
-    (title, opacities): (&str, &BTreeMap<FrameNumber, f64>),
+    (title, opacities, more): (&str, &BTreeMap<FrameNumber, f64>, &str),
     motion: Motion,
     shape: impl Fn(FrameNumber) -> Option<String>,
 ) {
     let shapes: Vec<Option<String>> = (scene.footage.first..=scene.footage.last).map(shape).collect();
     let Some(start) = shapes.iter().flatten().next().cloned() else { return };
-    let _ = writeln!(out, "<path {style} d=\"{start}\">\n<title>{title}</title>");
+    // Readers without animation show the first frame.
+    let hidden = if shapes[0].is_none() { " visibility=\"hidden\"" } else { "" };
+    let _ = writeln!(out, "<path {style}{hidden} d=\"{start}\">\n<title>{title}</title>");
     let seconds = shapes.len() as f64 / scene.footage.fps;
     let filled = nearest(&shapes, &start);
     animate(out, "d", seconds, motion, &filled);
@@ -186,6 +206,7 @@ fn path(
         let all: Vec<String> = (scene.footage.first..=scene.footage.last).map(opacity).collect();
         animate(out, "opacity", seconds, Motion::Hold, &all.iter().map(String::as_str).collect::<Vec<_>>());
     }
+    *out += more;
     *out += "</path>\n";
 }
 
@@ -279,6 +300,7 @@ mod tests {
         assert_eq!(attribute(&text, "dur"), ["0.32s", "0.32s"]);
         assert_eq!(attribute(&text, "values"), ["M0 0L8 0 0 8Z;M2 0L10 0 2 8Z", "hidden;visible"]);
         assert_eq!(attribute(&text, "keyTimes"), ["0;0.75", "0;0.25"]);
+        assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame, for readers without animation");
     }
 
     #[test]
@@ -327,11 +349,19 @@ mod tests {
         assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
         let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
         let filled = svg_with_drawn(&bare, &[], &[black], &SvgOptions::default());
-        assert!(filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" d="), "{filled}");
+        assert!(
+            filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" visibility=\"hidden\" d="),
+            "{filled}"
+        );
         let faint = SvgStroke { opacities: BTreeMap::from([(2, 0.25)]), ..stroke.clone() };
         let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
         assert!(faint.contains("attributeName=\"opacity\"") && faint.contains("values=\"1;0.25;1\""), "{faint}");
         assert!(!text.contains("attributeName=\"opacity\""));
+        let wide = SvgStroke { widths: BTreeMap::from([(2, 4.0)]), ..stroke.clone() };
+        let wide = svg_with_drawn(&bare, &[], &[wide], &SvgOptions::default());
+        assert!(wide.contains("attributeName=\"stroke-width\"") && wide.contains("values=\"2.5;4\""), "{wide}");
+        assert!(!text.contains("attributeName=\"stroke-width\""));
+        assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame");
         let values = attribute(&text, "values");
         assert_eq!(values[1], "hidden;visible;hidden");
         let counts: Vec<usize> = values[0].split(';').map(|d| d.split([' ', 'L']).count()).collect();
