@@ -61,19 +61,52 @@ pub fn decode_layer(path: &Path, expected: Option<(usize, usize)>) -> Result<Ras
     raster(size, stored.layer())
 }
 
-/// Width of a pixel divided by its height, as an OpenEXR file says; 1 for other files, and for those that cannot be read or say
-/// nothing sensible. It reads the header of the file only.
-pub fn pixel_aspect(path: &Path) -> f32 {
+/// What the header of an OpenEXR file says of its picture, beside its size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Described {
+    /// Width of a pixel divided by its height; 1 if the file says nothing sensible.
+    pub pixel_aspect: f32,
+    /// The CIE x and y of red, green, blue and white.
+    pub chromaticities: Option<[f32; 8]>,
+    /// SMPTE 12M time code: time and flags, then user data, as in the file.
+    pub time_code: Option<[u32; 2]>,
+}
+
+impl Default for Described {
+    fn default() -> Self {
+        Self { pixel_aspect: 1.0, chromaticities: None, time_code: None }
+    }
+}
+
+/// What a file says of its picture; nothing for other files than OpenEXR, and for those that cannot be read. It reads the header of
+/// the file only.
+pub fn described(path: &Path) -> Described {
     const SENSIBLE: std::ops::RangeInclusive<f32> = 0.01..=100.0;
     let read = || {
         let reader = open(path, false)?;
         if reader.format() != Some(ImageFormat::OpenExr) {
-            return Ok(1.0);
+            return Ok(Described::default());
         }
         let headers = tiles::headers(&mut reader.into_inner())?;
-        Ok(headers.first().map_or(1.0, |header| header.shared_attributes.pixel_aspect))
+        let Some(header) = headers.first() else { return Ok(Described::default()) };
+        let own = &header.shared_attributes;
+        let places = own.chromaticities.map(|own| [own.red, own.green, own.blue, own.white]);
+        let numbers = places
+            .map(|places| std::array::from_fn(|k| if k % 2 == 0 { places[k / 2].x() } else { places[k / 2].y() }));
+        let code =
+            own.time_code.and_then(|code| Some([code.pack_time_as_tv60_u32().ok()?, code.pack_user_data_as_u32()]));
+        Ok(Described {
+            pixel_aspect: Some(own.pixel_aspect).filter(|aspect| SENSIBLE.contains(aspect)).unwrap_or(1.0),
+            chromaticities: numbers.filter(|all: &[f32; 8]| all.iter().all(|number| number.is_finite())),
+            time_code: code,
+        })
     };
-    guarded(read).ok().filter(|aspect| SENSIBLE.contains(aspect)).unwrap_or(1.0)
+    guarded(read).unwrap_or_default()
+}
+
+/// Width of a pixel divided by its height ([`described`]).
+pub fn pixel_aspect(path: &Path) -> f32 {
+    described(path).pixel_aspect
 }
 
 /// Bytes of the picture in a file as [`super::store`] keeps it. Of floats this is a guess: nearly all have 16 bits. It
@@ -153,6 +186,28 @@ mod tests {
 
     fn shade(x: u32, y: u32) -> [u8; 3] {
         [(x * 50) as u8, (y * 60) as u8, 130]
+    }
+
+    #[test]
+    fn headers_describe_their_pictures() {
+        use exr::meta::attribute::{Chromaticities, TimeCode};
+        use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage};
+        let folder = folder();
+        let path = folder.path().join("a.exr");
+        let mut image = Image::from_channels((5, 4), SpecificChannels::rgb(|_| (0.5f32, 0.25f32, 0.125f32)));
+        let own = &mut image.attributes;
+        let at = |k: u8| Vec2(0.125 * f32::from(k), 0.0625 * f32::from(k));
+        own.chromaticities = Some(Chromaticities { red: at(1), green: at(2), blue: at(3), white: at(4) });
+        own.time_code = Some(TimeCode { hours: 1, minutes: 23, seconds: 45, frame: 16, ..TimeCode::default() });
+        own.pixel_aspect = 2.0;
+        image.write().to_file(&path).unwrap();
+        let found = described(&path);
+        assert_eq!(found.pixel_aspect, 2.0);
+        assert_eq!(found.chromaticities, Some([0.125, 0.0625, 0.25, 0.125, 0.375, 0.1875, 0.5, 0.25]));
+        // Two decimal digits in each byte.
+        assert_eq!(found.time_code, Some([0x0123_4516, 0]));
+        std::fs::write(&path, "no picture").unwrap();
+        assert_eq!(described(&path), Described::default());
     }
 
     #[test]

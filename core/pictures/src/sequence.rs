@@ -7,7 +7,7 @@
 //!
 //! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
-use super::decode::{pixel_aspect, raster, stored};
+use super::decode::{Described, described, raster, stored};
 use super::error::DecodeError;
 use super::store;
 use super::stored::Stored;
@@ -96,9 +96,14 @@ impl Sequence {
         self.read(frame, Stored::layer)
     }
 
-    /// Width of a frame's pixels divided by their height ([`pixel_aspect`]).
+    /// What a frame's file says of its picture ([`described`]).
+    pub fn described(&self, frame: FrameNumber) -> Described {
+        described(&self.path(frame))
+    }
+
+    /// Width of a frame's pixels divided by their height.
     pub fn pixel_aspect(&self, frame: FrameNumber) -> f32 {
-        pixel_aspect(&self.path(frame))
+        self.described(frame).pixel_aspect
     }
 
     fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {

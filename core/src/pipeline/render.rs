@@ -5,6 +5,7 @@ use super::picture::{Picture, RenderJob};
 use super::{PipelineError, frames, frames_of, memory};
 use crate::pictures::Sequence;
 use crate::project::{Document, Inputs, write_whole};
+use crate::render::header::{self, BT709, Facts};
 use crate::render::{self, Format};
 use crate::scene::{Footage, FrameNumber, FrameSource, Progress, Scene};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -85,11 +86,21 @@ fn picture(
             render::encode::colours(&render::overlay(&document.scene, frame, &below, parts, options), plan.format)
         }
     };
-    let mut bytes = bytes.map_err(|source| PipelineError::Encode { frame, source })?;
-    if plan.format == Format::Exr && plan.aspect != 1.0 {
-        render::header::set_pixel_aspect(&mut bytes, plan.aspect);
-    }
-    Ok(bytes)
+    let bytes = bytes.map_err(|source| PipelineError::Encode { frame, source })?;
+    Ok(if plan.format == Format::Exr { described(bytes, sequence, job, plan, frame) } else { bytes })
+}
+
+/// An OpenEXR file with what is known of its pixels. What shows the footage has the footage's colours.
+fn described(bytes: Vec<u8>, sequence: &Sequence, job: &RenderJob, plan: &Rendering, frame: FrameNumber) -> Vec<u8> {
+    let own = sequence.described(frame);
+    let shows_footage = matches!(job.picture, Picture::Overlay(_) | Picture::Cutout | Picture::Painted);
+    let facts = Facts {
+        pixel_aspect: plan.aspect,
+        chromaticities: own.chromaticities.filter(|_| shows_footage).unwrap_or(BT709),
+        fps: plan.size.fps,
+        time_code: own.time_code,
+    };
+    header::describe(bytes, &facts)
 }
 
 fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Rendering, PipelineError> {

@@ -230,5 +230,7 @@ fn pictures_have_the_pixel_aspect_of_the_footage() {
         assert!(output.status.success(), "{}", told(&output));
         let bytes = fs::read(to).unwrap();
         assert_eq!(bytes[place(&bytes)..][..4], 2f32.to_le_bytes(), "{what}");
+        let told = |text: &[u8]| bytes.windows(text.len()).any(|own| own == text);
+        assert!(told(b"chromaticities\0chromaticities\0\x20\0\0\0") && told(b"framesPerSecond\0rational\0\x08\0\0\0"));
     }
 }
