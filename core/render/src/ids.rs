@@ -5,8 +5,11 @@
 //! without layers. In addition, a layer with the name of each part has that part's own matte in its channel A, even
 //! where other parts hide it. Instead of a layer it can be a part of the file.
 
+use super::composite::Layers;
+use super::coverage::Window;
 use super::encode::{self, EncodeError, Format};
-use super::layers::{self, Channel, layer_name};
+use super::layers::{self, Channel, layer_name, layer_names};
+use super::streamed::{self, Line, Part};
 use super::visible::{Visible, visible};
 use super::{cryptomatte, matte};
 use rototoon_base::scene::{FrameNumber, Raster, Scene, palette};
@@ -68,13 +71,10 @@ pub fn id_picture(
 /// An [`EncodeError`].
 pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
+    let masks = Masks::new(scene, frame, parts);
     let mut channels = equal(&whole);
-    let mut taken = BTreeSet::new();
-    for index in closed(scene, parts) {
-        let name = format!("{}.A", layer_name(&scene.parts[index].name, &mut taken));
-        channels.push(Channel { name, values: matte::matte(scene, frame, Some(&[index])).data().to_vec() });
-    }
-    layers::encode(whole.width(), whole.height(), channels, &[])
+    channels.extend(masks.lines().map(|(name, line)| (format!("{name}.A"), line)));
+    streamed::encode(whole.width(), whole.height(), vec![Part { name: None, channels }])
 }
 
 /// Encodes the same mattes as the parts of one OpenEXR file. The first has the matte of all parts in R, G, B and A, and the
@@ -85,20 +85,57 @@ pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) 
 /// An [`EncodeError`].
 pub fn matte_parts(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
-    let (mut taken, mut own) = (BTreeSet::new(), Vec::new());
-    for index in closed(scene, parts) {
-        let values = matte::matte(scene, frame, Some(&[index])).data().to_vec();
-        let channel = Channel { name: "A".to_owned(), values };
-        own.push((layer_name(&scene.parts[index].name, &mut taken), vec![channel]));
-    }
+    let masks = Masks::new(scene, frame, parts);
     // A part of the document keeps its name, whatever it is.
-    own.insert(0, (layer_name("rgba", &mut taken), equal(&whole)));
-    layers::encode_parts(whole.width(), whole.height(), own)
+    let mut taken = masks.list.iter().map(|(name, _)| name.clone()).collect();
+    let mut files = vec![Part { name: Some(layer_name("rgba", &mut taken)), channels: equal(&whole) }];
+    files.extend(
+        masks.lines().map(|(name, line)| Part { name: Some(name.to_owned()), channels: vec![("A".to_owned(), line)] }),
+    );
+    streamed::encode(whole.width(), whole.height(), files)
+}
+
+/// The masks of closed parts, each with the name of its layer.
+struct Masks {
+    list: Vec<(String, Layers)>,
+    window: Window,
+}
+
+impl Masks {
+    fn new(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Self {
+        let order: Vec<usize> = closed(scene, parts).collect();
+        let names: Vec<&str> = order.iter().map(|&index| &scene.parts[index].name[..]).collect();
+        let masks = order.iter().map(|&index| matte::layers_of(scene, frame, index));
+        let (right, bottom) = (scene.footage.width as i64, scene.footage.height as i64);
+        let window = Window { left: 0, top: 0, right, bottom };
+        Self { list: layer_names(&names, &mut BTreeSet::new()).into_iter().zip(masks).collect(), window }
+    }
+
+    /// The name of each mask, and its lines. What a mask needs for them is made with its first line and gone after its last one.
+    fn lines(&self) -> impl Iterator<Item = (&str, Line<'_>)> {
+        self.list.iter().map(|(name, mask)| {
+            let (mut rows, window) = (None, self.window);
+            let line: Line = Box::new(move |y, row| {
+                let go_on = &mut || true;
+                if y == 0 {
+                    rows = mask.rows(window, go_on);
+                }
+                if let Some(values) = rows.as_mut().and_then(|rows| rows.next(go_on)) {
+                    row.copy_from_slice(values);
+                }
+                if y as i64 + 1 == window.bottom {
+                    rows = None;
+                }
+            });
+            (&name[..], line)
+        })
+    }
 }
 
 /// A matte in all four channels.
-fn equal(matte: &Raster<f32>) -> Vec<Channel> {
-    ["R", "G", "B", "A"].map(|name| Channel { name: name.to_owned(), values: matte.data().to_vec() }).into()
+fn equal(matte: &Raster<f32>) -> Vec<(String, Line<'_>)> {
+    let line = || -> Line { Box::new(|y, row| row.copy_from_slice(matte.row(y))) };
+    ["R", "G", "B", "A"].map(|name| (name.to_owned(), line())).into()
 }
 
 /// The closed ones of some parts.

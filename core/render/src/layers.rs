@@ -11,7 +11,7 @@ use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
 use exr::prelude::{Blocks, Compression, IntegerBounds};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 /// A channel of a picture.
@@ -35,20 +35,37 @@ pub struct Attribute {
 /// Greatest length of a layer name in bytes. Together with the name of a channel it is within the limit of a file.
 const LONGEST: usize = 240;
 
+/// Layer names of parts, in their order. A part whose name is a layer name keeps it; those that are changed get out of its way.
+pub fn layer_names(names: &[&str], taken: &mut BTreeSet<String>) -> Vec<String> {
+    let mut exact: BTreeMap<&str, usize> = BTreeMap::new();
+    for (k, name) in names.iter().enumerate() {
+        if plain(name) == *name && !taken.contains(*name) {
+            exact.entry(name).or_insert(k);
+        }
+    }
+    taken.extend(exact.keys().map(|name| (*name).to_owned()));
+    let keeps = |k: usize, name: &str| exact.get(name) == Some(&k);
+    let each = names.iter().enumerate();
+    each.map(|(k, name)| if keeps(k, name) { (*name).to_owned() } else { layer_name(name, taken) }).collect()
+}
+
 /// Converts a part's name to a layer name that is not in `taken`, and adds it there.
 pub fn layer_name(name: &str, taken: &mut BTreeSet<String>) -> String {
-    let mut plain: String = name.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect();
-    while plain.len() > LONGEST {
-        plain.pop();
-    }
-    if plain.trim().is_empty() {
-        plain = "part".to_owned();
-    }
+    let plain = plain(name);
     let numbered = (2..).map(|number| format!("{plain} {number}"));
     let free = std::iter::once(plain.clone()).chain(numbered).find(|name| !taken.contains(name));
     let chosen = free.unwrap_or(plain);
     taken.insert(chosen.clone());
     chosen
+}
+
+/// A name that a layer can have.
+fn plain(name: &str) -> String {
+    let mut plain: String = name.chars().map(|c| if c == '.' || c.is_control() { '_' } else { c }).collect();
+    while plain.len() > LONGEST {
+        plain.pop();
+    }
+    if plain.trim().is_empty() { "part".to_owned() } else { plain }
 }
 
 /// Encodes channels, each of `width` × `height` values, as OpenEXR.
@@ -93,7 +110,7 @@ pub fn encode_parts(width: usize, height: usize, parts: Vec<(String, Vec<Channel
 }
 
 /// Text in UTF-8. All readers take the bytes as they are.
-fn text(value: &str) -> Text {
+pub(super) fn text(value: &str) -> Text {
     Text::from_slice_unchecked(value.as_bytes())
 }
 
@@ -140,6 +157,8 @@ mod tests {
         let names: Vec<_> = ["a.b", "a_b", "", " ", "\u{1}", "été"].map(|name| layer_name(name, &mut taken)).into();
         assert_eq!(names, ["a_b", "a_b 2", "part", "part 2", "_", "été"]);
         assert!(layer_name(&"é".repeat(300), &mut taken).len() <= LONGEST);
+        let found = layer_names(&["a.b", "a_b", "rgba", "", "a_b", "part"], &mut BTreeSet::from(["rgba".to_owned()]));
+        assert_eq!(found, ["a_b 2", "a_b", "rgba 2", "part 2", "a_b 3", "part"]);
     }
 
     #[test]

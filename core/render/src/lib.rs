@@ -20,6 +20,7 @@
 //! - [`feather`]: soft borders
 //! - [`widths`]: the feather at any place, from widths along contours
 //! - [`line`](mod@line): lines of a width
+//! - `streamed`: the same files, line by line
 //! - `cells`: the areas of a pixel that several regions divide
 //! - `near`: distances where they decide something
 //! - [`encode`]: pictures as bytes of a file
@@ -66,6 +67,7 @@ mod near;
 pub mod overlay;
 pub mod paint;
 pub mod rows;
+mod streamed;
 pub mod stroke;
 pub mod visible;
 pub mod widths;

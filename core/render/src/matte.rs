@@ -38,9 +38,21 @@ pub fn feather_pieces(part: &Part, time: f64, curves: bool, place: &dyn Fn(Point
     widths::pieces(&segments, &own.iter().map(|width| width * scale).collect::<Vec<_>>())
 }
 
+/// The masks whose coverage is the [`matte`] of one part.
+pub(super) fn layers_of(scene: &Scene, frame: FrameNumber, part: usize) -> Layers {
+    soft_layers(scene, frame, &|index| index == part)
+}
+
 /// Coverage of closed parts of which some have a feather.
 fn soft(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Raster<f32> {
     let (width, height) = (scene.footage.width, scene.footage.height);
+    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
+    let drawn = soft_layers(scene, frame, wanted).draw(window, &mut || true);
+    drawn.unwrap_or_else(|| Raster::new(width, height, 0.0))
+}
+
+/// The masks of closed parts, the farthest first. Neighbouring ones without a feather are one.
+fn soft_layers(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Layers {
     let mut order: Vec<&Part> =
         scene.parts.iter().enumerate().filter(|(k, _)| wanted(*k)).map(|(_, part)| part).collect();
     order.retain(|part| part.closed && part.points_at(frame).is_some());
@@ -52,9 +64,7 @@ fn soft(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Ra
         Layer::new(Mask::new(vec![outlines], 0.0, 0.0).with_widths(&pieces).with_falloff(parts[0].falloff))
     };
     let groups = order.chunk_by(|a, b| a.soft_widths().is_none() && b.soft_widths().is_none());
-    let window = Window { left: 0, top: 0, right: width as i64, bottom: height as i64 };
-    let drawn = Layers(groups.map(layer).collect()).draw(window, &mut || true);
-    drawn.unwrap_or_else(|| Raster::new(width, height, 0.0))
+    Layers(groups.map(layer).collect())
 }
 
 /// The pixels of a frame, premultiplied, multiplied by the coverage of closed parts ([`matte`]).

@@ -11,8 +11,8 @@ use crate::scene::Footage;
 
 /// Bytes for each pixel of a picture that is rendered.
 const RENDER: u64 = 70;
-/// More bytes for each pixel and part, for the mattes of single parts.
-const RENDER_PART: u64 = 8;
+/// More bytes for each pixel and part, for the mattes of single parts: what their blocks of lines and the compressed file take.
+const RENDER_PART: u64 = 1;
 /// Bytes for each pixel of the pictures that tracking or snapping holds at once.
 const FOLLOW: u64 = 45;
 /// Bytes for each pixel of the two pictures that tracing holds at once.
