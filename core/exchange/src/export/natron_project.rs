@@ -6,7 +6,7 @@
 //! project keep their defaults; so only the format, the frames and the rate of the footage are there.
 //!
 //! The parts are Bézier curves of the base layer, the farthest first, since the node draws in this order. A curve has a key on
-//! every frame on which the part has a contour, and goes evenly between keys. Handles and the feather's points are at the
+//! every frame on which the part has a contour, but for those on which it is held, and goes evenly between keys. Handles and the feather's points are at the
 //! points, so sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is none. Of the falloff
 //! of a soft border it has the rate.
 //! Coordinates are pixels with x right and y up. Where a part is not there its curve is not active: a
@@ -26,7 +26,7 @@ use super::archive::{Archive, Class};
 use super::coordinate;
 use super::names::written;
 use super::natron::MOST_FALLOFF;
-use super::outlines::Outlines;
+use super::outlines::{Outlines, turning};
 use super::presence::presence;
 use super::xml::plain;
 use rototoon_base::geometry::Point;
@@ -157,7 +157,7 @@ fn context(out: &mut Archive, scene: &Scene, spacing: f64) {
                     let both = (script_name.as_str(), names[*index].as_str());
                     drawable(out, both, &scene.parts[*index], keys, footage, colour);
                 });
-                points(out, keys, footage.height as f64);
+                points(out, &turning(keys), footage.height as f64);
                 out.flag("Closed", scene.parts[*index].closed);
                 out.flag("OpenBezier", false);
             });

@@ -65,6 +65,13 @@ impl<'a> Outlines<'a> {
     }
 }
 
+/// Keys without those that say nothing in a format that goes evenly from one to the next: a contour that is the same as before and
+/// after is held.
+pub fn turning(keys: &[(FrameNumber, Vec<Point>)]) -> Vec<(FrameNumber, Vec<Point>)> {
+    let held = |k: usize| k > 0 && k + 1 < keys.len() && keys[k - 1].1 == keys[k].1 && keys[k].1 == keys[k + 1].1;
+    keys.iter().enumerate().filter(|(k, _)| !held(*k)).map(|(_, key)| key.clone()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,5 +86,15 @@ mod tests {
         part.tracks.insert(2, square.clone());
         let frames: Vec<_> = Outlines::new(&part, 1.0).within(0, 2).into_iter().map(|(frame, _)| frame).collect();
         assert_eq!(frames, [0, 2]);
+    }
+
+    #[test]
+    fn held_contours_have_keys_at_their_ends() {
+        let keys = [0, 0, 1, 1, 1, 1, 2, 2].map(|x| vec![Point::new(f64::from(x), 0.0)]);
+        let keys: Vec<(FrameNumber, Vec<Point>)> = (3..).zip(keys).collect();
+        let frames = |keys: &[_]| turning(keys).iter().map(|(frame, _)| *frame).collect::<Vec<FrameNumber>>();
+        assert_eq!(frames(&keys), [3, 4, 5, 8, 9, 10]);
+        assert_eq!(frames(&keys[2..5]), [5, 7]);
+        assert_eq!((frames(&keys[..1]), frames(&[])), (vec![3], vec![]));
     }
 }

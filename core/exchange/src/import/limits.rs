@@ -40,6 +40,20 @@ impl Points {
     }
 }
 
+/// Says that a file of XML has more nodes than this crate reads; `None` if it does not. It counts elements and the texts between tags.
+pub fn too_large(text: &str) -> Option<String> {
+    too_many(text, MOST_NODES as usize)
+}
+
+fn too_many(text: &str, most: usize) -> Option<String> {
+    let starts = |pair: &&[u8]| pair[0] == b'<' && !b"/!?".contains(&pair[1]);
+    let texts = |pair: &&[u8]| pair[0] == b'>' && pair[1] != b'<';
+    let count = text.as_bytes().windows(2).filter(|pair| starts(pair) || texts(pair)).count();
+    let bytes = text.len() as f64 / 1e9;
+    (count > most)
+        .then(|| format!("the file has {count} elements and texts ({bytes:.1} GB): import reads at most {most}"))
+}
+
 /// Requires that a point is within [`FARTHEST`].
 pub(super) fn near(p: Point, node: Node) -> Result<Point, ImportError> {
     if p.x.abs() <= FARTHEST && p.y.abs() <= FARTHEST {
@@ -62,4 +76,19 @@ pub(super) fn shallow(document: &Document) -> Result<(), ImportError> {
         depths.push(depth);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_are_counted_as_the_parser_does() {
+        let text = "<?xml version=\"1.0\"?><!-- c --><a b=\"1\"> <c>1</c><d/>\n</a>";
+        let nodes = Document::parse(text).unwrap().descendants().filter(|n| n.is_element() || n.is_text()).count();
+        assert_eq!(nodes, 6);
+        assert_eq!(too_many(text, nodes), None);
+        let told = too_many(text, nodes - 1).unwrap();
+        assert!(told.contains("has 6 elements and texts") && told.contains("at most 5"), "{told}");
+    }
 }

@@ -36,6 +36,7 @@ mod svg_outline;
 mod svg_style;
 mod svg_view;
 
+pub use limits::too_large;
 pub use problem::{ImportError, Place};
 
 use rototoon_base::geometry::Point;
