@@ -1,5 +1,6 @@
 //! Command-line options made from the core's list of parameters, and functions that read their values.
 
+use crate::failure::Failure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use rototoon::scene::FrameNumber;
@@ -86,6 +87,33 @@ pub fn number(arguments: &ArgMatches, id: &str) -> f64 {
 /// Whether a flag is on.
 pub fn flag(arguments: &ArgMatches, id: &str) -> bool {
     arguments.get_one::<bool>(id).copied().unwrap_or(false)
+}
+
+/// An option as it is written, if its value is not the one without it; `None` otherwise.
+fn changed(arguments: &ArgMatches, id: &str) -> Option<String> {
+    let value = match find(id)?.kind {
+        Kind::Flag { default } => {
+            Some(flag(arguments, id)).filter(|own| *own != default).map(|on| if on { "on" } else { "off" }.into())
+        }
+        Kind::Number { default, .. } => {
+            Some(number(arguments, id)).filter(|own| *own != default).map(|own| own.to_string())
+        }
+        Kind::Integer { default, .. } => {
+            arguments.get_one::<i64>(id).filter(|own| **own != default).map(i64::to_string)
+        }
+        Kind::Choice { default, .. } => Some(choice(arguments, id)).filter(|own| *own != default).map(str::to_owned),
+    };
+    Some(format!("--{} {}", id.replace('_', "-"), value?))
+}
+
+/// Refuses options that would change nothing. `with` tells what else was given.
+pub fn without(arguments: &ArgMatches, ids: &[&str], with: &str) -> Result<(), Failure> {
+    match ids.iter().find_map(|id| changed(arguments, id)) {
+        None => Ok(()),
+        Some(found) => {
+            Err(Failure::Use(format!("found {found}: expected no such option {with}, where it changes nothing")))
+        }
+    }
 }
 
 /// The number of threads given; 0 for one per core.

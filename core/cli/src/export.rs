@@ -4,6 +4,7 @@ use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{ArgMatches, Command};
 use rototoon::export::{Motion, SvgOptions};
+use rototoon::import::too_large;
 use rototoon::pipeline;
 use rototoon::project::write_whole;
 use rototoon::scene::parameters::Stage;
@@ -30,6 +31,12 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
             to.display()
         )));
     }
+    let unused: &[&str] = match extension.as_str() {
+        "svg" => &[],
+        "json" => &["motion", "spacing"],
+        _ => &["motion"],
+    };
+    arguments::without(given, unused, &format!("for a .{extension} file"))?;
     Ok(extension)
 }
 
@@ -65,7 +72,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             .map_err(|error| Failure::of(error, from))?,
     };
     write_whole(to, text.as_bytes())?;
-    let warnings = [pipeline::left_out_of_shapes(&document, &extension), pipeline::untracked(&document.scene)];
+    let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
+    let warnings = [pipeline::left_out_of_shapes(&document, &extension), pipeline::untracked(&document.scene), large];
     warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
     Ok(())
 }

@@ -40,8 +40,15 @@ fn job(given: &ArgMatches) -> Result<RenderJob, Failure> {
     if layers && parts {
         return Err(Failure::Use("found --layers on and --multipart on: expected one of them".to_owned()));
     }
+    let what = arguments::choice(given, "what");
+    let unused: &[&str] = match what {
+        "matte" => &["line_width", "points", "confidence"],
+        "overlay" => &["layers", "multipart"],
+        _ => &["layers", "multipart", "line_width", "points", "confidence"],
+    };
+    arguments::without(given, unused, &format!("with --what {what}"))?;
     Ok(RenderJob {
-        picture: match arguments::choice(given, "what") {
+        picture: match what {
             "matte" if layers => Picture::Layers,
             "matte" if parts => Picture::Parts,
             "matte" => Picture::Matte,

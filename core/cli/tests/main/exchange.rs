@@ -319,6 +319,29 @@ fn pictures_of_ids_and_layers_are_written() {
 }
 
 #[test]
+fn options_that_would_change_nothing_are_refused() {
+    let folder = Folder::new();
+    let captured = folder.captured();
+    for (command, name, options) in [
+        ("render", "a.exr", &["--what", "cutout", "--layers", "on"][..]),
+        ("render", "a.exr", &["--what", "ids", "--multipart", "on"]),
+        ("render", "a.exr", &["--what", "ids", "--line-width", "4"]),
+        ("render", "a.exr", &["--what", "matte", "--points", "off"]),
+        ("export", "a.nk", &["--motion", "linear"]),
+        ("export", "a.json", &["--spacing", "3"]),
+    ] {
+        let to = folder.path(name);
+        let frames: &[&str] = if command == "render" { &["--frames", "3"] } else { &[] };
+        let said = run(&[&[command, text(&captured), "-o", text(&to)], frames, options].concat(), 2);
+        let (option, value) = (options[options.len() - 2], options[options.len() - 1]);
+        let told = format!("found {option} {value}: expected no such option ");
+        assert!(said.contains(&told) && !to.exists(), "{said}");
+    }
+    // Their usual values say nothing.
+    run(&["export", text(&captured), "-o", text(&folder.path("a.nk")), "--motion", "hold"], 0);
+}
+
+#[test]
 fn the_shapes_for_after_effects_are_json_with_every_key() {
     let folder = Folder::new();
     let (from, to) = (folder.captured(), folder.path("shapes.jsx"));
