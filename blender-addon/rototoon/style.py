@@ -91,6 +91,11 @@ class Reshaped:
     """Parts that move without bending."""
     still: list[str]
     """Chains of the drawing's skeleton that no chain of the clip moves."""
+    mirrored: bool
+    """Whether the clip was mirrored, left for right."""
+    looks: dict[str, str | None] | None
+    """The sides to which `drawing` and `clip` look, ``"left"`` or ``"right"``, each `None` where it cannot be told. `None` if they did not
+    decide whether the clip was mirrored: the option said it, or it is a motion of the drawing itself."""
     points: dict[str, list[list[list[float]]]]
     """Places of the points of the option `points`, by part and frame."""
 
@@ -156,7 +161,8 @@ def reshape(
 
     Options: `character` and `motion` choose one of several clips. `rest` is the frame of the drawing. `sub_keys` is the number of
     points between the key points of each limb that keep its shape. `chains` are pairs of names: a chain of the clip's skeleton that
-    moves a chain of the drawing's, where the skeletons differ (``[["l_arm", "l_foreleg"]]``). `points` are more points that
+    moves a chain of the drawing's, where the skeletons differ (``[["l_arm", "l_foreleg"]]``). `mirror` says whether the clip is
+    mirrored: ``"auto"`` (if drawing and clip look to different sides), ``"on"`` or ``"off"``. `points` are more points that
     follow closed parts, by part.
     `threads`.
     """

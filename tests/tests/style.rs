@@ -75,8 +75,8 @@ fn reshaped(clip: &Clip, marks: bool) -> Document {
         document.set_limbs(&set);
     }
     let options = PuppetOptions::default();
-    let job =
-        ReshapeJob { clip, fps: 24.0, rest: None, over: None, chains: Vec::new(), options, points: Default::default() };
+    let (mirror, points) = Default::default();
+    let job = ReshapeJob { clip, fps: 24.0, rest: None, over: None, chains: Vec::new(), mirror, options, points };
     let made = pipeline::reshape(&mut document, &job, &Silent).unwrap();
     assert_eq!(made.given, []);
     let rigid = |name: &String| ["mitten", "boot", "head"].iter().any(|word| name.contains(word));

@@ -35,7 +35,7 @@ class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
         """Called by Blender for the dialog and the redo panel: what is asked for first comes first."""
         layout = self.layout
         layout.use_property_split = True
-        for name in ("content", "motion", "style", "preset", "strength", "sub_keys", "chains"):
+        for name in ("content", "motion", "style", "preset", "strength", "sub_keys", "chains", "mirror"):
             layout.prop(self, name)
 
     def begin(self, context):

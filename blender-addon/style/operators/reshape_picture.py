@@ -7,7 +7,7 @@ from ...blender.errors import Problem
 from .. import picture_pieces
 from ..clip_library import clips_of, folder_of
 from ..clip_properties import Manner, shared
-from .reshaping_base import Reshaping, unmoved
+from .reshaping_base import Reshaping, mirroring, unmoved
 
 
 class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
@@ -38,7 +38,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         layout = self.layout
         layout.use_property_split = True
         layout.prop_search(self, "picture", context.scene, "objects")
-        for name in ("character", "motion", "style", "preset", "strength", "border", "sub_keys", "chains", "hide"):
+        for name in ("character", "motion", "style", "preset", "strength", "border", "sub_keys", "chains", "mirror", "hide"):
             layout.prop(self, name)
 
     def begin(self, context):
@@ -68,7 +68,8 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         if self.hide and self._source.ob is not None:
             self._source.ob.hide_render = self._source.ob.hide_viewport = True
         shapes = len(made.data.shape_keys.key_blocks) - 1
-        return f'{len(self._pieces)} pieces, {shapes} frames after frame {self._drawing.frame}: "{made.name}"'
+        mirrored = mirroring(work.result)
+        return f'{len(self._pieces)} pieces, {shapes} frames after frame {self._drawing.frame}: "{made.name}"{mirrored}'
 
 
 CLASSES = (ROTOTOON_OT_reshape_picture,)

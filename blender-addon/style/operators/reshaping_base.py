@@ -28,6 +28,16 @@ class Reshaping(OnContours, Long):
         description="Which chain of the clip's body moves which chain of the drawing's, where their names differ: "
         "l_arm = l_foreleg, r_arm = r_foreleg",
     )
+    mirror: bpy.props.EnumProperty(
+        name="Mirror",
+        description="Whether the clip is mirrored, left for right",
+        items=[
+            ("auto", "Automatic", "If drawing and clip look to different sides"),
+            ("on", "On", "Mirror the clip"),
+            ("off", "Off", "Leave the clip as it is"),
+        ],
+        default="auto",
+    )
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -43,7 +53,8 @@ class Reshaping(OnContours, Long):
         if self.changes == guard.DRAWINGS:
             guard.need_some(tracking.contour_layers(self._ob), hidden=True)
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
-        threads, how = preferences.threads(), {"sub_keys": self.sub_keys, "chains": _pairs(self.chains)}
+        how = {"sub_keys": self.sub_keys, "chains": _pairs(self.chains), "mirror": self.mirror}
+        threads = preferences.threads()
         further = more(drawing) if more is not None else {}
 
         def run(progress):
@@ -61,7 +72,8 @@ class Reshaping(OnContours, Long):
         self.warn(guard.left_out(layers, hidden=True))
         self.warn(unmoved(work.result.still))
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
-        return f"{frames} frames after frame {self._drawing.frame}" + (f"; no limb carries {given}" if given else "")
+        mirrored = mirroring(work.result)
+        return f"{frames} frames after frame {self._drawing.frame}{mirrored}" + (f"; no limb carries {given}" if given else "")
 
 
 def _pairs(text: str) -> list[list[str]]:
@@ -76,3 +88,14 @@ def _pairs(text: str) -> list[list[str]]:
 def unmoved(chains: list[str]) -> str:
     """The warning about chains of the drawing's body that keep their shape; empty if there are none."""
     return f"no chain of the clip moves {', '.join(chains)}: see Chains" if chains else ""
+
+
+def mirroring(result) -> str:
+    """What the report says about a clip that was mirrored, or perhaps should have been; empty if there is nothing to say."""
+    if result.looks is None:
+        return ""
+    looks = {who: side or "to a side that cannot be told" for who, side in result.looks.items()}
+    if not result.mirrored and None not in result.looks.values():
+        return ""
+    done = "is mirrored" if result.mirrored else "is not mirrored"
+    return f"; the drawing looks {looks['drawing']} and the clip {looks['clip']}, so the clip {done}: see Mirror"

@@ -656,6 +656,8 @@ RototoonStatus rototoon_translate_clip(const uint8_t *clips,
 // - `character`, `motion`: the names of the clip. They are needed if the file has several clips.
 // - `rest`: the frame of the drawing.
 // - `sub_keys`: the number of points of each limb between its key points, 0 to 100.
+// - `mirror`: "auto", "on" or "off", whether the clip is mirrored. With "auto" it is if drawing and clip look to different
+//   sides.
 // - `points`: `{closed part: [[x, y]]}`, further points in pixels that follow the part.
 // - `threads`: number of threads, 0 for one per core.
 //
@@ -665,6 +667,10 @@ RototoonStatus rototoon_translate_clip(const uint8_t *clips,
 // - `given`: `[{"part", "follows"}]`, the parts that no limb carries and for which the document does not say what they
 //   follow, each with what it follows, in words.
 // - `rigid`: the names of the parts that do not bend.
+// - `still`: the names of the chains that no chain of the clip moves.
+// - `mirrored`: whether the clip was mirrored.
+// - `looks`: `{"drawing", "clip"}`, the sides to which they look, "left", "right" or null where it cannot be told. It is null if they did
+//   not decide whether the clip was mirrored.
 // - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 RototoonStatus rototoon_reshape(const uint8_t *document,
                                 size_t document_length,

@@ -5,7 +5,7 @@ use crate::status::Failure;
 use crate::work::{GoOn, run};
 use rototoon::geometry::Point;
 use rototoon::import::bvh::{self, JointMap, Up, View};
-use rototoon::pipeline::{self, ClipJob, PipelineError, ReshapeJob};
+use rototoon::pipeline::{self, ClipJob, Mirror, PipelineError, ReshapeJob, Side};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
 use rototoon::project::library::{Entry, Library};
@@ -213,6 +213,8 @@ struct ReshapeOptions {
     #[serde(default)]
     chains: Vec<(String, String)>,
     #[serde(default)]
+    mirror: Option<String>,
+    #[serde(default)]
     points: BTreeMap<String, Vec<[f64; 2]>>,
     #[serde(default)]
     threads: usize,
@@ -235,6 +237,7 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         rest: given.rest,
         over: None,
         chains: given.chains.clone(),
+        mirror: given.mirror()?,
         options: how,
         points: given.points(),
     };
@@ -243,6 +246,9 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         let loose: Vec<Value> =
             made.given.iter().map(|(part, given)| json!({"part": part, "follows": given.to_string()})).collect();
         let (given, rigid, still) = (Value::Array(loose), json!(made.rigid), json!(made.still));
+        let looks =
+            made.sides.map(|sides| json!({"drawing": sides.drawing.map(Side::id), "clip": sides.clip.map(Side::id)}));
+        let (mirrored, looks) = (made.mirrored, json!(looks));
         let pair = |p: &Point| [p.x, p.y];
         let frames = |frames: &Vec<Vec<Point>>| {
             json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())
@@ -252,13 +258,21 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         let points = Value::Object(points);
         let document = document.to_json();
         Ok(format!(
-            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "still": {still}, "points": {points}}}"#,
+            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "still": {still}, "mirrored": {mirrored}, "looks": {looks}, "points": {points}}}"#,
             document.trim_end()
         ))
     })
 }
 
 impl ReshapeOptions {
+    fn mirror(&self) -> Result<Mirror, Failure> {
+        let Some(found) = &self.mirror else { return Ok(Mirror::default()) };
+        Mirror::from_id(found).ok_or_else(|| {
+            let known = Mirror::ALL.map(|(id, _)| format!("{id:?}")).join(", ");
+            Failure::Error(format!("options.mirror: found {found:?}, expected one of {known}"))
+        })
+    }
+
     fn points(&self) -> BTreeMap<String, Vec<Point>> {
         self.points
             .iter()

@@ -17,8 +17,7 @@
 //! whichever frame is at rest. Two different figures do not share a posture by chance: with five or more key points
 //! within a hundredth of the torso, they also share their proportions.
 //!
-//! **Direction.** A body that lies along the ground, such as a four-legged one, looks to one side. Where the drawing looks
-//! to the other side than the clip, the clip is mirrored ([`facing`]).
+//! **Direction.** The clip looks to the side to which the drawing looks: [`super::facing`].
 //!
 //! **Place.** Otherwise the root (a human's pelvis) begins where it is drawn, and its way is scaled by the lengths of the legs (of the
 //! torso, if no leg is drawn). [`super::stand`] puts the feet on the ground.
@@ -61,23 +60,9 @@ pub struct Fitted {
     pub own: bool,
 }
 
-/// A body lies along the ground if its torso is at least this many times as long along x as along y.
-const LIES: f64 = 1.0;
-
-/// A clip of the drawing's body, mirrored if it looks to the other side than the drawing. Only a body whose torso lies
-/// along the ground in its template has such a side.
-pub fn facing(shown: &Shown, clip: &[Vec<Point>]) -> Option<Vec<Vec<Point>>> {
-    let torso = shown.template.torso();
-    let way = |p: &[Point]| p[torso[torso.len() - 1]] - p[0];
-    let side = |postures: &[Vec<Point>]| postures.iter().map(|p| way(p).x).sum::<f64>();
-    let typical = way(&shown.template.typical());
-    let lies = typical.x.abs() > LIES * typical.y.abs();
-    if !lies || side(&shown.postures) * side(clip) >= 0.0 {
-        return None;
-    }
-    let about = clip.first()?[0].x;
-    let mirrored = |p: &Vec<Point>| p.iter().map(|q| Point::new(2.0 * about - q.x, q.y)).collect();
-    Some(clip.iter().map(mirrored).collect())
+/// Whether a clip of the drawing's body is a motion of the drawing itself.
+pub fn is_own(shown: &Shown, clip: &[Vec<Point>]) -> bool {
+    own(shown, clip).is_some()
 }
 
 /// Fits a clip of the drawing's body to the drawing; `None` if the clip's torso has no length.
@@ -234,7 +219,7 @@ mod tests {
             for (frames, scale) in [(0..8, 3.0), (4..8, 1.0), (4..8, 3.0)] {
                 let given: Vec<Vec<Point>> = all[frames.clone()].iter().map(|p| each(p, |q| q * scale)).collect();
                 let found = fit(&shown(all.clone(), rest), &given).unwrap();
-                assert!(found.own);
+                assert!(found.own && is_own(&shown(all.clone(), rest), &given));
                 for (made, wanted) in found.postures.iter().zip(&all[frames]) {
                     assert!(made.iter().zip(wanted).all(|(a, b)| a.distance(*b) < 1e-9));
                 }
@@ -287,20 +272,5 @@ mod tests {
         few.told = (0..COUNT).map(|k| k < 3).collect();
         assert!(!fit(&few, &clip(0)).unwrap().own);
         assert_eq!(fit(&few, &[vec![Point::ZERO; COUNT]]), None);
-    }
-
-    #[test]
-    fn a_clip_that_looks_to_the_other_side_is_mirrored() {
-        let cat = Template::quadruped();
-        let drawn = each(&cat.typical(), |p| 100.0 * p);
-        let shown =
-            Shown { rest: drawn.clone(), postures: vec![drawn.clone()], told: vec![true; cat.len()], template: cat };
-        let left: Vec<Vec<Point>> = [0.0, 1.0].map(|t| each(&drawn, |p| Point::new(3.0 - p.x - 8.0 * t, p.y))).to_vec();
-        let mirrored = facing(&shown, &left).unwrap();
-        assert!((mirrored[1][0].x - mirrored[0][0].x - 8.0).abs() < 1e-9, "it goes to the right");
-        assert!(mirrored[0].iter().zip(&drawn).all(|(a, b)| a.distance(*b + Point::new(3.0, 0.0)) < 1e-9));
-        assert_eq!(facing(&shown, &mirrored), None);
-        let standing = self::shown(vec![figure(0.0)], 0);
-        assert_eq!(facing(&standing, &[each(&figure(0.0), |p| Point::new(-p.x, p.y))]), None);
     }
 }

@@ -12,7 +12,7 @@
 //! the chord between the same two shares of the clip's chain.
 //!
 //! **The rest.** A key point that no pair moves keeps its typical place on what it hangs on, and turns with it. The root
-//! goes the clip's way. Bones have their typical lengths, in a size in which the paired legs are as long as those of the
+//! goes the clip's way. [`super::still`] gives the drawing's own shape to what nothing moves. Bones have their typical lengths, in a size in which the paired legs are as long as those of the
 //! clip (without legs the torsos), so the way fits the steps.
 //!
 //! Limits: bones do not grow or shrink, so foreshortening is lost. Contacts are not kept here: [`super::stand`] puts the
@@ -69,6 +69,8 @@ pub struct Retargeted {
     pub clip: Clip,
     /// Chains of the wanted template that nothing moves. They keep their typical shape.
     pub still: Vec<String>,
+    /// For each key point of the wanted template whether the clip moves the bone that ends in it. The root moves.
+    pub moved: Vec<bool>,
 }
 
 /// Makes a clip of another template. `pairs` are names of chains: of the clip's template, and of the wanted one.
@@ -90,7 +92,8 @@ pub fn retarget(clip: &Clip, to: &Arc<Template>, pairs: &[(String, String)]) -> 
     let moved = |chain: &&Chain| matched.iter().any(|(_, own)| own.name == chain.name);
     let still = to.chains().iter().filter(|chain| !moved(chain)).map(|chain| chain.name.clone()).collect();
     let clip = Clip::of(to.clone(), clip.character.as_str(), clip.motion.as_str(), postures);
-    Ok(Retargeted { clip, still })
+    let moved = (0..to.len()).map(|k| k == 0 || bones.iter().any(|bone| bone.end == k)).collect();
+    Ok(Retargeted { clip, still, moved })
 }
 
 /// The chains that belong together: of the clip's template, of the wanted one.
@@ -252,6 +255,11 @@ mod tests {
         let chains = pairs(&[("l_arm", "l_foreleg"), ("r_arm", "r_foreleg")]);
         let made = retarget(&clip, &cat, &chains).unwrap();
         assert_eq!(made.still, ["neck", "tail"]);
+        for (k, moved) in made.moved.iter().enumerate() {
+            let name = cat.point_name(k);
+            let rests = ["neck", "head", "tail", "shoulder", "hip"].iter().any(|word| name.contains(word));
+            assert_eq!(*moved, !rests, "{name}");
+        }
         let of = |frame: usize, chain: &str| direction(&cat, &made.clip.postures[frame], chain);
         assert!((of(1, "l_leg") - of(0, "l_leg") - 0.35).abs() < 1e-9);
         assert!((of(2, "r_foreleg") - of(0, "r_foreleg") + 0.5).abs() < 1e-9);

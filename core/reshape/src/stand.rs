@@ -2,10 +2,7 @@
 //!
 //! A foot is drawn with a sole: the outline of its shoe, or of the end of the leg. From [`Contacts`] follow
 //!
-//! 1. **The pitch of shoes.** While a foot stands its sole lies flat, also if it is drawn tilted ([`flat`]). In the air
-//!    it takes a share of the shin's turn. After a contact the heel comes off first: the foot turns about its toe as
-//!    far as the ankle has risen, φ = asin(h / l), with l the way from the ankle to the toe. Before a contact the
-//!    forward shin has the toe up, so the heel comes down first.
+//! 1. **The pitch of shoes** (the module `pitch`).
 //! 2. **The height of the pelvis.** On each frame with a foot on the ground, the lowest sole touches the ground line.
 //!    In the air the shift is interpolated, so a jump keeps its height. No sole is ever below the ground. A clip with a
 //!    fixed pelvis gets back the rise and fall of its steps.
@@ -15,79 +12,33 @@
 //!
 //! The order is 1 to 4, twice, since a leg that moves turns its shin.
 //!
+//! **The drawing's own motion** has its pelvis in the right place already. Steps 1 and 4, and step 3 for the legs, are made there, for shoes, on the frames that
+//! the document does not show ([`stand_own`]).
+//!
 //! Limits: the ground is a level line. A leg that would have to be longer stays straight and hangs above the ground.
 
 use super::contacts::{Contacts, quantile};
+use super::foot::{Foot, foot_of};
+use super::pitch::{FADE, pitches};
 use super::reach::reach;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Template;
 
 /// Rounds of the four steps.
 const ROUNDS: usize = 2;
-/// Frames over which corrections fade beside a contact.
-const FADE: usize = 3;
-/// A heel comes off until the ankle has risen by this share of the way from ankle to toe.
-const TOE: f64 = 0.8;
-/// Points of a sole are on the ground if they are no higher than this share of the foot's size above its lowest point.
-const TOUCHES: f64 = 0.06;
-/// A foot is laid flatter if each radian of turn adds this share of its size to what touches the ground.
-const FLATTER: f64 = 0.35;
-/// A turn must gain this share of the foot's size over the foot as drawn: a drawn curve is a polygon.
-const CLEARLY: f64 = 0.15;
-/// Largest turn that lays a sole flat, in radians.
-const MOST_TILT: f64 = 1.0;
 
-/// A foot of a drawing at rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Foot {
-    /// Which of the template's legs has it.
-    pub leg: usize,
-    /// Points of its outline relative to the ankle, at rest.
-    pub shape: Vec<Point>,
-    /// The leg's last bone at rest: of a human the shin, from knee to ankle.
-    pub shin: Point,
-    /// For a shoe the share of the shin's turn that it takes in the air; `None` for the end of a leg, which turns with the
-    /// shin.
-    pub turn: Option<f64>,
-}
-
-impl Foot {
-    /// The last bone's turn from rest, in radians, for a leg in a posture.
-    fn shin_turn(&self, leg: &[usize], posture: &[Point]) -> f64 {
-        let now = posture[foot_of(leg)] - posture[leg[leg.len() - 2]];
-        if now.length_squared() > 0.0 && self.shin.length_squared() > 0.0 { self.shin.angle_to(now) } else { 0.0 }
-    }
-
-    /// The foot's turn in the air.
-    pub fn swing(&self, leg: &[usize], posture: &[Point]) -> f64 {
-        self.turn.unwrap_or(1.0) * self.shin_turn(leg, posture)
-    }
-
-    /// How far the foot reaches below the ankle, turned by an angle.
-    fn depth(&self, turn: f64) -> f64 {
-        let turn = Point::from_angle(turn);
-        self.shape.iter().map(|p| turn.rotate(*p).y).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// The point of the sole farthest to the side to which the foot points.
-    fn toe(&self, flat: f64) -> Point {
-        let turn = Point::from_angle(flat);
-        let touching = on_ground(&self.shape.iter().map(|p| turn.rotate(*p)).collect::<Vec<_>>());
-        touching.into_iter().max_by(|a, b| a.x.abs().total_cmp(&b.x.abs())).unwrap_or(Point::X)
-    }
-}
-
-/// The key point of a leg's foot: its last.
-fn foot_of(leg: &[usize]) -> usize {
-    leg[leg.len() - 1]
-}
-
-/// What stands on what: the legs of the body, the feet that are drawn, when they stand, and the ground line's y.
+/// What stands on what.
 struct Ground<'a> {
+    /// The legs of the body.
     legs: &'a [&'a [usize]],
+    /// The feet that are drawn.
     feet: &'a [Foot],
+    /// When they stand.
     contacts: &'a Contacts,
+    /// The ground line's y.
     y: f64,
+    /// Of the drawing's own motion, for each frame the turns of the feet where the document shows them; else empty.
+    drawn: &'a [Option<Vec<f64>>],
 }
 
 impl Ground<'_> {
@@ -100,56 +51,12 @@ impl Ground<'_> {
     fn above(&self, foot: &Foot, posture: &[Point], turn: f64) -> f64 {
         self.y - posture[foot_of(self.leg(foot))].y - foot.depth(turn)
     }
-}
 
-/// The points of a foot that touch the ground.
-fn on_ground(shape: &[Point]) -> Vec<Point> {
-    let low = shape.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    let size = diameter(shape);
-    shape.iter().filter(|p| p.y >= low - TOUCHES * size).copied().collect()
-}
-
-fn diameter(shape: &[Point]) -> f64 {
-    shape.iter().flat_map(|p| shape.iter().map(|q| p.distance(*q))).fold(0.0, f64::max)
-}
-
-/// The turn that lays a sole flat on the ground; 0 if it is drawn flat, or has no flat side.
-///
-/// Of the turns that lay an edge of the lower hull level, the one with which most of the width touches the ground.
-pub fn flat(shape: &[Point]) -> f64 {
-    let size = diameter(shape);
-    let touching = |angle: f64| {
-        let turn = Point::from_angle(angle);
-        let on = on_ground(&shape.iter().map(|p| turn.rotate(*p)).collect::<Vec<_>>());
-        let (left, right) = on.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), p| (l.min(p.x), r.max(p.x)));
-        (right - left) / size.max(f64::MIN_POSITIVE) - FLATTER * angle.abs()
-    };
-    let mut best = (0.0, touching(0.0));
-    for (a, b) in lower_hull(shape) {
-        let angle = -(b - a).to_angle();
-        let gain = touching(angle);
-        if angle.abs() <= MOST_TILT && gain > best.1 + if best.0 == 0.0 { CLEARLY } else { 0.0 } {
-            best = (angle, gain);
-        }
+    /// Whether a foot may be moved on a frame. In the drawing's own motion the end of a leg is where its key points are, and
+    /// nothing moves where the document shows the drawing.
+    fn moves(&self, foot: &Foot, frame: usize) -> bool {
+        self.drawn.get(frame).is_none_or(|drawn| drawn.is_none() && foot.turn.is_some())
     }
-    best.0
-}
-
-/// The edges of the convex hull's lower side (y down), from left to right (Andrew's monotone chain).
-fn lower_hull(points: &[Point]) -> Vec<(Point, Point)> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    let mut hull: Vec<Point> = Vec::new();
-    for p in sorted {
-        while let [.., a, b] = hull[..] {
-            if (b - a).perp_dot(p - a) < 0.0 {
-                break;
-            }
-            hull.pop();
-        }
-        hull.push(p);
-    }
-    hull.windows(2).map(|pair| (pair[0], pair[1])).filter(|(a, b)| a.x < b.x).collect()
 }
 
 /// Puts the feet of fitted postures on the ground. `clip` is the motion in its own unit, `size` that unit in pixels,
@@ -163,80 +70,88 @@ pub fn stand(
 ) -> Vec<Vec<f64>> {
     let legs = template.legs();
     let contacts = Contacts::of(&legs, clip);
-    let on = Ground { legs: &legs, feet, contacts: &contacts, y: ground };
-    let flats: Vec<f64> = feet.iter().map(|foot| foot.turn.map_or(0.0, |_| flat(&foot.shape))).collect();
-    let mut turns = vec![vec![0.0; postures.len()]; feet.len()];
+    let on = Ground { legs: &legs, feet, contacts: &contacts, y: ground, drawn: &[] };
+    let mut turns = vec![Vec::new(); feet.len()];
     for _ in 0..ROUNDS {
-        set_turns(&mut turns, postures, &flats, &on);
+        set_turns(&mut turns, postures, &on);
         set_heights(postures, &turns, &on);
         if contacts.way {
             set_way(postures, &on, size);
+            stop_slips(postures, &on, size);
         }
         set_legs(postures, &turns, &on);
     }
-    set_turns(&mut turns, postures, &flats, &on);
+    set_turns(&mut turns, postures, &on);
     clear(postures, &turns, &on);
     turns
+}
+
+/// The same for the drawing's own motion, whose pelvis is already where it belongs: only shoes are turned, and legs moved by what
+/// is left. `drawn` has for each frame the turns of all feet, where the document shows the drawing; there nothing changes. The
+/// ground is where feet stand on those frames, else where they stand in the motion; without contacts nothing is below it. Returns
+/// the turns and the ground line's y.
+pub fn stand_own(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    feet: &[Foot],
+    drawn: &[Option<Vec<f64>>],
+) -> (Vec<Vec<f64>>, Option<f64>) {
+    let legs = template.legs();
+    let contacts = Contacts::of(&legs, postures);
+    let found = own_ground(postures, (&legs, feet), &contacts, drawn);
+    let on = Ground { legs: &legs, feet, contacts: &contacts, y: found.unwrap_or(f64::INFINITY), drawn };
+    let mut turns = vec![Vec::new(); feet.len()];
+    for _ in 0..ROUNDS {
+        set_turns(&mut turns, postures, &on);
+        stop_slips(postures, &on, 1.0);
+        set_legs(postures, &turns, &on);
+    }
+    set_turns(&mut turns, postures, &on);
+    if found.is_some() {
+        clear(postures, &turns, &on);
+    }
+    (turns, found)
+}
+
+/// The y of the soles that stand in the drawing's own motion: their median, over the frames that the document shows if a foot
+/// stands on one of them. `None` without contacts.
+fn own_ground(
+    postures: &[Vec<Point>],
+    (legs, feet): (&[&[usize]], &[Foot]),
+    contacts: &Contacts,
+    drawn: &[Option<Vec<f64>>],
+) -> Option<f64> {
+    let (mut shown, mut all) = (Vec::new(), Vec::new());
+    for (k, foot) in feet.iter().enumerate() {
+        let leg = legs[foot.leg];
+        for t in (0..postures.len()).filter(|&t| contacts.stands[foot.leg][t]) {
+            let known = drawn.get(t).and_then(|turns| Some(turns.as_ref()?[k]));
+            let otherwise = || foot.turn.map_or_else(|| foot.swing(leg, &postures[t]), |_| foot.level);
+            let sole = postures[t][foot_of(leg)].y + foot.depth(known.unwrap_or_else(otherwise));
+            all.push(sole);
+            shown.extend(known.map(|_| sole));
+        }
+    }
+    let of = if shown.is_empty() { all } else { shown };
+    (!of.is_empty()).then(|| quantile(of, 0.5))
 }
 
 /// Lifts feet that are still below the ground.
 fn clear(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
     for (foot, turns) in on.feet.iter().zip(turns) {
-        for (posture, turn) in postures.iter_mut().zip(turns) {
-            let above = on.above(foot, posture, *turn);
+        for (t, posture) in postures.iter_mut().enumerate().filter(|(t, _)| on.moves(foot, *t)) {
+            let above = on.above(foot, posture, turns[t]);
             reach(posture, on.leg(foot), Point::new(0.0, above.min(0.0)));
         }
     }
 }
 
 /// Step 1.
-fn set_turns(turns: &mut [Vec<f64>], postures: &[Vec<Point>], flats: &[f64], on: &Ground) {
-    for ((foot, turns), &flat) in on.feet.iter().zip(turns).zip(flats) {
-        let leg = on.leg(foot);
-        for (turn, posture) in turns.iter_mut().zip(postures) {
-            *turn = foot.swing(leg, posture);
-        }
-        if foot.turn.is_none() {
-            continue;
-        }
-        for run in on.contacts.runs(foot.leg) {
-            turns[run.clone()].fill(flat);
-            let after = postures[run.end..].iter().map(|posture| posture[foot_of(leg)].y);
-            let rolled = roll(foot, flat, after, on.y);
-            let end = run.end + rolled.len();
-            for (turn, rolled) in turns[run.end..].iter_mut().zip(&rolled) {
-                *turn = *rolled;
-            }
-            let last = rolled.last().copied().unwrap_or(flat);
-            // The turn goes over into that in the air; before the contact likewise.
-            for k in 0..FADE.min(turns.len() - end) {
-                let share = (k + 1) as f64 / (FADE + 1) as f64;
-                turns[end + k] = last + (turns[end + k] - last) * share;
-            }
-            for k in 0..(FADE - 1).min(run.start) {
-                let share = (k + 1) as f64 / FADE as f64;
-                let at = run.start - 1 - k;
-                turns[at] = flat + (turns[at] - flat) * share;
-            }
-        }
+fn set_turns(turns: &mut [Vec<f64>], postures: &[Vec<Point>], on: &Ground) {
+    for (k, (foot, turns)) in on.feet.iter().zip(turns).enumerate() {
+        let drawn: Vec<Option<f64>> = on.drawn.iter().map(|turns| Some(turns.as_ref()?[k])).collect();
+        *turns = pitches(foot, on.leg(foot), postures, (&on.contacts.runs(foot.leg), on.y), &drawn);
     }
-}
-
-/// The turns after a contact while the toe still stands. `after` is the ankle's y on the frames after it.
-fn roll(foot: &Foot, flat: f64, after: impl Iterator<Item = f64>, ground: f64) -> Vec<f64> {
-    let (toe, stood) = (foot.toe(flat), ground - foot.depth(flat));
-    let length = toe.x.abs();
-    let mut found: Vec<f64> = Vec::new();
-    let mut before = 0.0;
-    for ankle in after {
-        let risen = stood - ankle;
-        if !(risen > before && risen < TOE * length) {
-            break;
-        }
-        found.push(flat + toe.x.signum() * (risen / length).asin());
-        before = risen;
-    }
-    found
 }
 
 /// Step 2.
@@ -277,17 +192,18 @@ fn between(known: &[(usize, f64)], t: usize) -> f64 {
     }
 }
 
-/// For each contact of a drawn foot, its leg, frames, and the shift of each frame along x that makes it go with the
-/// ground.
-fn slips(postures: &[Vec<Point>], on: &Ground, size: f64) -> Vec<(usize, usize, Vec<f64>)> {
+/// For each contact of a drawn foot, the foot, the first frame, and the shift of each frame along x that makes it go with the
+/// ground: from where the document shows it, else from its median place.
+fn slips<'a>(postures: &[Vec<Point>], on: &Ground<'a>, size: f64) -> Vec<(&'a Foot, usize, Vec<f64>)> {
     let mut found = Vec::new();
     for foot in on.feet {
         let ankle = foot_of(on.leg(foot));
         for run in on.contacts.runs(foot.leg) {
             let goes = |t: usize| on.contacts.ground * size * (t - run.start) as f64;
             let at = |t: usize| postures[t][ankle].x - goes(t);
-            let stood = quantile(run.clone().map(at).collect(), 0.5);
-            found.push((foot.leg, run.start, run.clone().map(|t| stood - at(t)).collect()));
+            let drawn = run.clone().find(|&t| on.drawn.get(t).is_some_and(Option::is_some));
+            let stood = drawn.map_or_else(|| quantile(run.clone().map(at).collect(), 0.5), at);
+            found.push((foot, run.start, run.clone().map(|t| stood - at(t)).collect()));
         }
     }
     found
@@ -307,9 +223,13 @@ fn set_way(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
         let shift = between(&known, t);
         posture.iter_mut().for_each(|p| p.x += shift);
     }
-    for (leg, start, shifts) in slips(postures, on, size) {
+}
+
+/// What is left of step 3 for the legs.
+fn stop_slips(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
+    for (foot, start, shifts) in slips(postures, on, size) {
         let shifts: Vec<Point> = shifts.into_iter().map(|x| Point::new(x, 0.0)).collect();
-        faded(postures, on.legs[leg], start, &shifts);
+        faded(postures, on.leg(foot), start, &shifts, |t| on.moves(foot, t));
     }
 }
 
@@ -319,15 +239,15 @@ fn set_legs(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
         for run in on.contacts.runs(foot.leg) {
             let gap = |t: usize| on.above(foot, &postures[t], turns[t]);
             let shifts: Vec<Point> = run.clone().map(|t| Point::new(0.0, gap(t))).collect();
-            faded(postures, on.leg(foot), run.start, &shifts);
+            faded(postures, on.leg(foot), run.start, &shifts, |t| on.moves(foot, t));
         }
     }
 }
 
-/// Moves a foot by the shifts of a contact, and less on the frames beside it.
-fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Point]) {
+/// Moves a foot by the shifts of a contact, and less on the frames beside it, on the frames on which it `moves`.
+fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Point], moves: impl Fn(usize) -> bool) {
     let end = start + shifts.len();
-    for t in start.saturating_sub(FADE)..(end + FADE).min(postures.len()) {
+    for t in (start.saturating_sub(FADE)..(end + FADE).min(postures.len())).filter(|&t| moves(t)) {
         let inside = t.clamp(start, end - 1);
         let weight = 1.0 - t.abs_diff(inside) as f64 / (FADE + 1) as f64;
         reach(&mut postures[t], leg, shifts[inside - start] * weight);
@@ -337,32 +257,21 @@ fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Poi
 #[cfg(test)]
 mod tests {
     use super::super::contacts::tests::{human, walk};
+    use super::super::foot::tests::shoe;
     use super::*;
     use rototoon_base::scene::skeleton::LEGS;
 
-    fn shoe(tilt: f64) -> Vec<Point> {
-        let turn = Point::from_angle(tilt);
-        [(-6.0, 4.0), (-5.0, 8.0), (4.0, 8.0), (14.0, 8.0), (15.0, 5.0), (4.0, -2.0), (-4.0, -3.0)]
-            .map(|(x, y)| turn.rotate(Point::new(x, y)))
-            .to_vec()
-    }
-
     fn feet(turn: Option<f64>) -> Vec<Foot> {
-        (0..2).map(|leg| Foot { leg, shape: shoe(0.0), shin: Point::new(0.0, 40.0), turn }).collect()
+        let shin = Point::new(0.0, 40.0);
+        let foot = |leg| match turn {
+            Some(turn) => Foot::shoe(leg, shoe(0.0), shin, turn),
+            None => Foot::end(leg, shoe(0.0), shin),
+        };
+        (0..2).map(foot).collect()
     }
 
     fn soles(postures: &[Vec<Point>], feet: &[Foot], turns: &[Vec<f64>], t: usize) -> [f64; 2] {
         [0, 1].map(|k| postures[t][LEGS[feet[k].leg][2]].y + feet[k].depth(turns[k][t]))
-    }
-
-    #[test]
-    fn a_tilted_sole_is_laid_flat_and_a_ball_is_left_as_drawn() {
-        for tilt in [0.0, 0.5, -0.4] {
-            assert!((flat(&shoe(tilt)) + tilt).abs() < 1e-9, "{tilt}: {}", flat(&shoe(tilt)));
-        }
-        let ball: Vec<Point> = (0..24).map(|k| Point::from_angle(0.2618 * f64::from(k)) * 9.0).collect();
-        assert_eq!(flat(&ball), 0.0);
-        assert_eq!(flat(&[]), 0.0);
     }
 
     #[test]
@@ -417,6 +326,38 @@ mod tests {
         let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 50.0);
         let low = |t: usize| soles(&made, &feet, &turns, t).into_iter().fold(f64::MIN, f64::max);
         assert!((low(3) - 50.0).abs() < 0.5 && (low(15) - 10.0).abs() < 2.0, "{} {}", low(3), low(15));
+    }
+
+    #[test]
+    fn the_own_motion_keeps_its_pelvis_and_the_frames_that_are_shown() {
+        let clip = walk(48, true);
+        let contacts = human(&clip);
+        let first = contacts.runs(0)[0].start + 1;
+        let mut drawn: Vec<Option<Vec<f64>>> = vec![None; 48];
+        drawn[first] = Some(vec![0.0, -0.4]);
+        let (mut made, feet) = (clip.clone(), feet(Some(1.0)));
+        let (turns, ground) = stand_own(&Template::human(), &mut made, &feet, &drawn);
+        let ground = ground.unwrap();
+        assert!((ground - clip[first][13].y - 8.0).abs() < 1e-9, "the foot that is drawn stands on it: {ground}");
+        assert_eq!((&made[first], turns[0][first], turns[1][first]), (&clip[first], 0.0, -0.4));
+        for (t, (made, clip)) in made.iter().zip(&clip).enumerate() {
+            assert!((0..12).all(|k| made[k] == clip[k]), "frame {t}: only legs move");
+            for foot in 0..2 {
+                let sole = made[LEGS[foot][2]].y + feet[foot].depth(turns[foot][t]);
+                assert!(t == first || sole < ground + 0.5, "frame {t}: a sole under the ground");
+                if contacts.stands[foot][t] && t != first {
+                    assert!((sole - ground).abs() < 0.5 && turns[foot][t] == 0.0, "frame {t}: {sole} {ground}");
+                }
+            }
+        }
+        // What a document shows of every frame stays, and so do legs without shoes.
+        let all = vec![Some(vec![0.3, 0.2]); 48];
+        let mut same = clip.clone();
+        let (turns, _) = stand_own(&Template::human(), &mut same, &feet, &all);
+        assert_eq!((same, turns), (clip.clone(), vec![vec![0.3; 48], vec![0.2; 48]]));
+        let mut same = clip.clone();
+        stand_own(&Template::human(), &mut same, &self::feet(None), &vec![None; 48]);
+        assert_eq!(same, clip);
     }
 
     #[test]

@@ -2,7 +2,9 @@
 //!
 //! The drawing is a document's contours on one frame, at rest, with limbs.
 //!
+//! - `moves`: the clip as one of the drawing's body
 //! - `motion`: the clip in the drawing's proportions and place, its feet on the drawing's ground
+//! - `feet`: the drawing's feet and its ground
 //! - `bodies`: every closed part follows the limbs that carry it ([`crate::reshape::puppet`]), corrected by what other
 //!   frames show of it ([`crate::reshape::examples`]), and takes along the strokes and open contours that lie on it
 //! - `loose`: what parts follow that no limb carries
@@ -11,8 +13,10 @@
 //! Marks "in front" and "behind" give the depths of each frame.
 
 mod bodies;
+mod feet;
 mod loose;
 mod motion;
+mod moves;
 mod store;
 
 use super::PipelineError;
@@ -29,10 +33,42 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+pub use crate::reshape::facing::Side;
 pub use loose::Given;
 
 /// Depths are written to a millionth.
 const DEPTH_SCALE: f64 = 1e6;
+/// Whether a clip is mirrored, left for right.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mirror {
+    /// If drawing and clip look to different sides ([`crate::reshape::facing`]).
+    #[default]
+    Auto,
+    /// Yes.
+    On,
+    /// No.
+    Off,
+}
+
+impl Mirror {
+    /// All values by their names in options.
+    pub const ALL: [(&'static str, Self); 3] = [("auto", Self::Auto), ("on", Self::On), ("off", Self::Off)];
+
+    /// The value of a name.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(name, _)| *name == id).map(|(_, mirror)| *mirror)
+    }
+}
+
+/// The sides to which a drawing and a clip look; none where it cannot be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sides {
+    /// Of the drawing.
+    pub drawing: Option<Side>,
+    /// Of the clip.
+    pub clip: Option<Side>,
+}
+
 /// What is to be made of a drawing.
 #[derive(Clone, Debug)]
 pub struct ReshapeJob<'a> {
@@ -47,6 +83,8 @@ pub struct ReshapeJob<'a> {
     /// Chains of the clip's skeleton and of the drawing's that belong together though their names differ. A clip of another
     /// skeleton is retargeted ([`crate::reshape::retarget`]).
     pub chains: Vec<(String, String)>,
+    /// Whether the clip is mirrored.
+    pub mirror: Mirror,
     /// How parts are reshaped.
     pub options: Options,
     /// By name of a closed part, points that shall follow it beside its own: those of a picture's mesh.
@@ -62,6 +100,11 @@ pub struct Reshaped {
     pub rigid: Vec<String>,
     /// Chains of the drawing's skeleton that no chain of the clip moves.
     pub still: Vec<String>,
+    /// Whether the clip was mirrored.
+    pub mirrored: bool,
+    /// The sides to which drawing and clip look, where they decided whether the clip was mirrored. None if the job said it, and for
+    /// a motion of the drawing itself.
+    pub sides: Option<Sides>,
     /// By part and frame where the points of [`ReshapeJob::points`] are.
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
@@ -75,7 +118,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let footage = footage(&document.scene.footage, job);
     let parts = &document.scene.parts;
     let bindings = Bindings::new(&set, parts).map_err(wrong)?;
-    let motion = motion::of(&set, &bindings, parts, rest, (job.clip, footage.first), &job.chains)?;
+    let motion = motion::of(&set, &bindings, parts, rest, (job, footage.first))?;
     let mut bodies = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
     let depths = depths(&set, parts, footage.first..=footage.last)?;
@@ -97,7 +140,14 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
         let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
         (body.name.clone(), moved.frames.iter().map(tail).collect())
     });
-    let report = Reshaped { given: given.collect(), rigid, still: motion.still, points: points.collect() };
+    let report = Reshaped {
+        given: given.collect(),
+        rigid,
+        still: motion.still,
+        mirrored: motion.mirrored,
+        sides: motion.sides,
+        points: points.collect(),
+    };
     let placed = rebound(&set, &bindings, parts, rest);
     store::store(document, footage, (&bodies, &moved), &strokes, &depths);
     document.set_limbs(&placed);
@@ -217,3 +267,5 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
 mod animals;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod walkers;

@@ -3,8 +3,9 @@
 use super::load;
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use rototoon::pipeline::{self, ReshapeJob};
+use rototoon::pipeline::{self, Mirror, PipelineError, ReshapeJob, Reshaped, Side, Sides};
 use rototoon::project::Document;
 use rototoon::project::clips::Clips;
 use rototoon::project::output::check_writable;
@@ -62,8 +63,22 @@ pub fn command() -> Command {
                 .action(ArgAction::Append)
                 .value_parser(pair),
         )
+        .arg(mirror())
         .arg(arguments::output("OUT", "The document to write, with tracks, depths and strokes on every frame"))
         .args(arguments::of_stage(Stage::Run))
+}
+
+/// `--mirror auto|on|off`.
+fn mirror() -> Arg {
+    Arg::new("mirror")
+        .long("mirror")
+        .help("Whether the clip is mirrored, left for right")
+        .default_value("auto")
+        .value_parser(PossibleValuesParser::new([
+            PossibleValue::new("auto").help("If drawing and clip look to different sides"),
+            PossibleValue::new("on").help("Yes"),
+            PossibleValue::new("off").help("No"),
+        ]))
 }
 
 /// Runs the subcommand.
@@ -88,20 +103,51 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let options = sub_keys.map_or_else(Options::default, |sub_keys| Options { sub_keys, ..Options::default() });
     let rest = given.get_one::<FrameNumber>("rest").copied();
     let chains = given.get_many::<(String, String)>("chain").into_iter().flatten().cloned().collect();
-    let job = ReshapeJob { clip, fps: clips.fps, rest, over, chains, options, points: Default::default() };
+    let mirror = Mirror::from_id(arguments::choice(given, "mirror")).unwrap_or_default();
+    let job = ReshapeJob { clip, fps: clips.fps, rest, over, chains, mirror, options, points: Default::default() };
     let (document, made) = progress::run(arguments::threads(given), |bar| {
-        let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| Failure::of(error, from))?;
+        let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| failed(error, from))?;
         Ok((document, made))
     })?;
+    report(&made, from);
+    project::save(document, from, to)
+}
+
+/// The failure of the work. Each pair of chains is an option of its own.
+fn failed(error: PipelineError, from: &Path) -> Failure {
+    let error = match error {
+        PipelineError::Option { option: "chains", reason } => PipelineError::Option { option: "chain", reason },
+        other => other,
+    };
+    Failure::of(error, from)
+}
+
+/// Says what the artist should know about a result.
+fn report(made: &Reshaped, from: &Path) {
+    let say = |kind: &str, text: &str| line(kind, &format!("{}: {text}", from.display()));
     for (part, given) in &made.given {
-        let text = format!("part {part:?}: no limb carries it, so {given}");
-        line("warning", &format!("{}: {text}", from.display()));
+        say("warning", &format!("part {part:?}: no limb carries it, so {given}"));
     }
     for chain in &made.still {
-        let text = format!("chain {chain:?}: no chain of the clip belongs to it, so it stays still (--chain)");
-        line("warning", &format!("{}: {text}", from.display()));
+        say("warning", &format!("chain {chain:?}: no chain of the clip belongs to it, so it stays still (--chain)"));
     }
-    project::save(document, from, to)
+    if let Some(text) = made.sides.and_then(|sides| about_sides(sides, made.mirrored)) {
+        say("note", &text);
+    }
+}
+
+/// Whether the clip was mirrored, if that is worth a note.
+fn about_sides(sides: Sides, mirrored: bool) -> Option<String> {
+    let looks = |side: Option<Side>| side.map_or("to a side that cannot be told", Side::id);
+    let (drawing, clip) = (looks(sides.drawing), looks(sides.clip));
+    if mirrored {
+        return Some(format!(
+            "the drawing looks {drawing} and the clip {clip}, so the clip is mirrored (--mirror off)"
+        ));
+    }
+    let untold = sides.drawing.is_none() || sides.clip.is_none();
+    untold
+        .then(|| format!("the drawing looks {drawing} and the clip {clip}, so the clip is not mirrored (--mirror on)"))
 }
 
 /// Two names with `=` between them.

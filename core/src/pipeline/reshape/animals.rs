@@ -12,7 +12,7 @@ use std::sync::Arc;
 const FRAMES: usize = 12;
 
 /// What each part of a drawn animal is made of: its name, half its width, its key points.
-type Drawn = (&'static str, f64, &'static [&'static str]);
+pub(super) type Drawn = (&'static str, f64, &'static [&'static str]);
 
 const DOG: [Drawn; 7] = [
     ("body", 12.0, &["pelvis", "back", "withers"]),
@@ -73,7 +73,7 @@ fn strip(template: &Template, posture: &[Point], (_, half, points): Drawn) -> Ve
 }
 
 /// An animal's film: every part has a contour on every frame.
-fn film(template: &Arc<Template>, drawn: &[Drawn], postures: &[Vec<Point>]) -> Document {
+pub(super) fn film(template: &Arc<Template>, drawn: &[Drawn], postures: &[Vec<Point>]) -> Document {
     let text = format!(
         r#"{{"rototoon": 1, "footage": {{"pattern": "f_%d.png", "first": 0, "last": {}, "fps": 24, "width": 480, "height": 320}}, "parts": []}}"#,
         postures.len() - 1
@@ -100,7 +100,7 @@ fn film(template: &Arc<Template>, drawn: &[Drawn], postures: &[Vec<Point>]) -> D
     Document::parse(&document.to_json(), "animal").unwrap()
 }
 
-fn own_clip(document: &Document) -> Clip {
+pub(super) fn own_clip(document: &Document) -> Clip {
     let job = ClipJob { character: "rex".into(), motion: "walk".into(), frames: None };
     clip(document, &job).unwrap().clips.clips.remove(0)
 }
@@ -109,7 +109,7 @@ fn on(drawing: &Document, clip: &Clip, chains: &[(&str, &str)]) -> (Document, Re
     let mut document = drawing.clone();
     let chains = chains.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned())).collect();
     let (options, points) = (Options::default(), BTreeMap::new());
-    let job = ReshapeJob { clip, fps: 24.0, rest: Some(0), over: None, chains, options, points };
+    let job = ReshapeJob { clip, fps: 24.0, rest: Some(0), over: None, chains, mirror: Mirror::Auto, options, points };
     let made = reshape(&mut document, &job, &Silent).unwrap();
     (document, made)
 }
@@ -198,7 +198,11 @@ fn another_animal_that_looks_the_other_way_walks_on_its_own_ground() {
 fn a_human_walk_makes_an_animal_walk_by_named_chains() {
     let human = Template::human();
     let clip = Clip::of(human.clone(), "ann", "walk", walk(&human, 50.0, 1.0));
-    let dog = still(&Template::quadruped(), &DOG, &walk(&Template::quadruped(), 60.0, 1.0));
+    // The dog is drawn with its tail up.
+    let quadruped = Template::quadruped();
+    let mut drawn = walk(&quadruped, 60.0, 1.0);
+    turn(&quadruped, &mut drawn[0], "tail_base", 1.2);
+    let dog = still(&quadruped, &DOG, &drawn);
     let (made, report) = on(&dog, &clip, &[("l_arm", "l_foreleg"), ("r_arm", "r_foreleg")]);
     assert_eq!(report.still, ["neck", "tail"]);
     let captured = own_clip(&made);
@@ -213,8 +217,34 @@ fn a_human_walk_makes_an_animal_walk_by_named_chains() {
             (angles.iter().copied().fold(f64::MAX, f64::min), angles.iter().copied().fold(f64::MIN, f64::max));
         assert!((0.3..0.9).contains(&(high - low)), "{chain} swings by {}", high - low);
     }
-    let tail = |p: &[Point]| angle(p, "tail");
-    assert!((tail(&captured.postures[3]) - tail(&captured.postures[9])).abs() < 0.05, "the tail keeps its shape");
+    let tail = |p: &[Point]| angle(p, "tail") - (p[2] - p[0]).to_angle();
+    for (frame, posture) in captured.postures.iter().enumerate() {
+        let off = Point::from_angle(tail(posture) - tail(&drawn[0])).to_angle();
+        assert!(off.abs() < 0.06, "frame {frame}: the tail is {off} off its drawn angle to the body");
+    }
+}
+
+#[test]
+fn a_human_walk_to_the_left_moves_an_animal_to_where_it_looks() {
+    let human = Template::human();
+    // Knees in front, elbows behind: the clip looks to where it goes.
+    let bent = |mut p: Vec<Point>, side: f64| {
+        for (joint, angle) in [("l_knee", 0.4), ("r_knee", 0.4), ("l_elbow", -0.4), ("r_elbow", -0.4)] {
+            turn(&human, &mut p, joint, side * angle);
+        }
+        p
+    };
+    for (goes, looks) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+        let postures = walk(&human, 50.0, goes).into_iter().map(|p| bent(p, goes)).collect();
+        let clip = Clip::of(human.clone(), "ann", "walk", postures);
+        let dog = still(&Template::quadruped(), &DOG, &walk(&Template::quadruped(), 60.0, looks));
+        let (made, report) = on(&dog, &clip, &[("l_arm", "l_foreleg"), ("r_arm", "r_foreleg")]);
+        assert_eq!(report.mirrored, goes != looks);
+        let captured = own_clip(&made).postures;
+        let way = |from: Point, to: Point| (to.x - from.x) * looks;
+        assert!(way(captured[0][0], captured[FRAMES - 1][0]) > 10.0, "{goes} {looks}: it goes to where it looks");
+        assert!(captured.iter().all(|p| way(p[0], p[2]) > 0.0), "{goes} {looks}: it looks as drawn");
+    }
 }
 
 #[test]
@@ -226,7 +256,8 @@ fn bodies_without_a_common_chain_are_refused() {
     let worm = crate::project::skeleton::read(Some(&serde_json::from_str(text).unwrap())).unwrap();
     let clip = Clip::of(worm.clone(), "w", "crawl", vec![worm.typical()]);
     let (options, points) = (Options::default(), BTreeMap::new());
-    let job = ReshapeJob { clip: &clip, fps: 24.0, rest: None, over: None, chains: Vec::new(), options, points };
+    let (mirror, chains) = (Mirror::Auto, Vec::new());
+    let job = ReshapeJob { clip: &clip, fps: 24.0, rest: None, over: None, chains, mirror, options, points };
     let said = reshape(&mut drawing, &job, &Silent).unwrap_err().to_string();
     assert!(said.contains("found no chain of \"worm\" (spine) that belongs to one of \"human\""), "{said}");
 }

@@ -4,32 +4,29 @@
 //! drawing itself, its feet are put on the drawing's ground ([`crate::reshape::stand`]). The ground is found in the
 //! drawing: the lowest point of its feet, on most of the frames that show it.
 //!
-//! A shoe gets a limb of its own, from the ankle in the direction of the picture's x, which turns with the foot's pitch.
-//! A leg without a shoe stands on its end.
+//! In a motion of the drawing itself the feet are as drawn on the frames that the document shows, and on the ground on
+//! the others.
 
-use super::{PipelineError, wrong};
+use super::feet::{Feet, FootLimb, feet, ground};
+use super::moves::{Moves, moves};
+use super::{PipelineError, ReshapeJob, Sides, wrong};
 use crate::geometry::Point;
 use crate::reshape::capture::{Bindings, capture};
-use crate::reshape::fit::{Shown, facing, fit};
+use crate::reshape::fit::{Shown, fit};
+use crate::reshape::foot::Foot;
 use crate::reshape::limb::{Bend, bend_at};
 use crate::reshape::puppet::LimbPose;
-use crate::reshape::retarget::retarget;
-use crate::reshape::stand::{Foot, stand};
+use crate::reshape::stand::{stand, stand_own};
+use crate::reshape::still::keep_still;
 use crate::scene::limbs::LimbSet;
-use crate::scene::{Clip, FrameNumber, Part, Template};
+use crate::scene::{Clip, FrameNumber, Part};
 use std::collections::BTreeSet;
 
-/// A part hangs on the end of a limb if its centre is nearest to a point of the limb beyond this share of it.
-const END: f64 = 0.75;
-/// A point belongs to the end of a leg if it is within this share of the shin of the ankle.
-const LEG_END: f64 = 0.35;
-/// Share of the frames that show the drawing on which its lowest foot is no lower than its ground.
-const GROUND: f64 = 0.75;
-/// Length of a foot's limb, as a share of the torso. It has no influence on the result.
-const FOOT: f64 = 0.25;
+/// Two postures are one if their key points are this near, as a root mean square in torso lengths, whatever the shift.
+const ONE_POSTURE: f64 = 0.01;
 
 /// Postures by frame.
-type ByFrame = Vec<(FrameNumber, Vec<Point>)>;
+pub(super) type ByFrame = Vec<(FrameNumber, Vec<Point>)>;
 
 /// All limbs at rest, on every frame of the clip, and on the frames that show the drawing. After the document's limbs
 /// come those of the feet.
@@ -54,100 +51,120 @@ pub(super) struct Motion {
     pub feet: Vec<FootLimb>,
     /// Chains of the drawing's skeleton that no chain of the clip moves.
     pub still: Vec<String>,
+    /// Whether the clip was mirrored.
+    pub mirrored: bool,
+    /// To which sides drawing and clip look, if that decided it.
+    pub sides: Option<Sides>,
 }
 
-/// A foot and its limb.
-pub(super) struct FootLimb {
-    /// Index of its limb.
-    pub limb: usize,
-    /// Index of the shin.
-    pub shin: usize,
-    /// The parts that are its shoe; without one those of the leg's end.
-    pub parts: Vec<String>,
-    /// What stands on the ground.
-    pub foot: Foot,
-}
-
-/// Fits a clip to the drawing of a document. `first` is the frame of the clip's first posture in the result.
+/// Fits a job's clip to the drawing of a document. `first` is the frame of the clip's first posture in the result.
 pub(super) fn of(
     set: &LimbSet,
     bindings: &Bindings,
     parts: &[Part],
     rest: FrameNumber,
-    (clip, first): (&Clip, FrameNumber),
-    chains: &[(String, String)],
+    (job, first): (&ReshapeJob, FrameNumber),
 ) -> Result<Motion, PipelineError> {
-    check(clip)?;
+    check(job.clip)?;
     let template = set.template.as_ref();
     let (known, shown) = shown(set, bindings, parts, rest)?;
-    let posture = known.rest.clone();
-    let (moves, still) = moves(set, &known, clip, chains)?;
-    let fitted =
-        fit(&known, &moves).ok_or_else(|| wrong("clip: found a torso of length 0, expected a positive length"))?;
     let poses = Poses::new(set, bindings, rest)?;
     let limbs = poses.at_rest();
-    let size = template.torso_length(&posture);
-    let feet = Feet { legs: template.legs(), size, feet: feet(set, parts, rest, &limbs, &posture) };
-    let ground = ground(parts, &feet.feet, &shown).unwrap_or(posture[0].y);
-    let mut postures = fitted.postures;
-    let turns = match fitted.own {
-        true => feet.swings(&postures),
-        false => stand(template, &mut postures, (&moves, fitted.size), &feet.plain(), ground),
+    let size = template.torso_length(&known.rest);
+    let feet = Feet { legs: template.legs(), size, feet: feet(set, parts, rest, &limbs, &known.rest) };
+    let moves = moves(&known, &feet.plain(), job)?;
+    let fitted = fit(&known, &moves.postures)
+        .ok_or_else(|| wrong("clip: found a torso of length 0, expected a positive length"))?;
+    let examples: Vec<Example> = shown
+        .iter()
+        .filter(|(f, _)| !set.swapped(*f))
+        .filter_map(|shown| example(shown, &feet, parts, &poses))
+        .collect();
+    let floor = ground(parts, &feet.feet, &shown).unwrap_or(known.rest[0].y);
+    let (mut postures, own) = (fitted.postures, fitted.own);
+    let (turns, ground) = if own {
+        let drawn = drawn_frames(&known, &examples, &postures);
+        let (turns, found) = stand_own(template, &mut postures, &feet.plain(), &drawn);
+        (turns, found.unwrap_or(floor))
+    } else {
+        on_ground(&known, &moves, &mut postures, (fitted.size, &feet.plain(), floor))
     };
     computable(&postures)?;
     let frame_limbs = |(t, posture): (usize, &Vec<Point>)| {
         feet.added(poses.of(posture, first + t as FrameNumber), posture, |k| turns[k][t])
     };
-    let example = |(frame, posture): &(FrameNumber, Vec<Point>)| {
-        Some((*frame, feet.added(poses.drawn(*frame)?, posture, |k| feet.swing(k, posture)), posture[0]))
-    };
+    let (root, frames) = (known.rest[0], postures.iter().enumerate().map(frame_limbs).collect());
     Ok(Motion {
-        rest: feet.added(limbs, &posture, |_| 0.0),
-        root: posture[0],
-        frames: postures.iter().enumerate().map(frame_limbs).collect(),
+        rest: feet.added(limbs, &known.rest, |_| 0.0),
+        root,
+        frames,
         way: postures.iter().map(|p| p[0]).collect(),
-        examples: shown.iter().filter(|(f, _)| !set.swapped(*f)).filter_map(example).collect(),
+        examples: examples.into_iter().map(|e| (e.frame, e.limbs, e.posture[0])).collect(),
         size,
         ground,
-        own: fitted.own,
+        own,
         feet: feet.feet,
-        still,
+        still: moves.still,
+        mirrored: moves.mirrored,
+        sides: moves.sides,
     })
 }
 
-/// The feet, and what their limbs are made of.
-struct Feet<'a> {
-    feet: Vec<FootLimb>,
-    legs: Vec<&'a [usize]>,
-    /// Length of the torso in pixels.
-    size: f64,
+/// Puts the feet of another figure's motion on the drawing's ground. `size`: the clip's unit in pixels. Returns the feet's turns
+/// by frame, and the ground.
+fn on_ground(
+    known: &Shown,
+    moves: &Moves,
+    postures: &mut [Vec<Point>],
+    (size, feet, ground): (f64, &[Foot], f64),
+) -> (Vec<Vec<f64>>, f64) {
+    if moves.moved.contains(&false) {
+        keep_still(known, &moves.moved, postures);
+    }
+    (stand(&known.template, postures, (&moves.postures, size), feet, ground), ground)
 }
 
-impl Feet<'_> {
-    fn plain(&self) -> Vec<Foot> {
-        self.feet.iter().map(|f| f.foot.clone()).collect()
-    }
+/// A frame of the document that shows the drawing.
+struct Example {
+    frame: FrameNumber,
+    /// Its limbs, after the document's own those of the feet.
+    limbs: Vec<LimbPose>,
+    posture: Vec<Point>,
+    /// The turns of the feet.
+    turns: Option<Vec<f64>>,
+}
 
-    /// The turn of a foot in the air, in radians from rest.
-    fn swing(&self, k: usize, posture: &[Point]) -> f64 {
-        let foot = &self.feet[k].foot;
-        foot.swing(self.legs[foot.leg], posture)
-    }
+/// What a frame of the document shows. A shoe whose turn cannot be measured there has that of the air.
+fn example(
+    (frame, posture): &(FrameNumber, Vec<Point>),
+    feet: &Feet,
+    parts: &[Part],
+    poses: &Poses,
+) -> Option<Example> {
+    let turns = feet.drawn(parts, (poses.rest, *frame), posture);
+    let swing = |k: usize| {
+        let foot = &feet.feet[k].foot;
+        foot.swing(feet.legs[foot.leg], posture)
+    };
+    let limbs =
+        feet.added(poses.drawn(*frame)?, posture, |k| turns.as_ref().map_or_else(|| swing(k), |turns| turns[k]));
+    Some(Example { frame: *frame, limbs, posture: posture.clone(), turns })
+}
 
-    /// The turns of all feet on every frame.
-    fn swings(&self, postures: &[Vec<Point>]) -> Vec<Vec<f64>> {
-        (0..self.feet.len()).map(|k| postures.iter().map(|p| self.swing(k, p)).collect()).collect()
-    }
-
-    /// The limbs of a posture and those of the feet, each turned by the radians of `turn`.
-    fn added(&self, mut limbs: Vec<LimbPose>, posture: &[Point], turn: impl Fn(usize) -> f64) -> Vec<LimbPose> {
-        limbs.extend(self.feet.iter().enumerate().map(|(k, foot)| {
-            let ankle = posture[end_of(self.legs[foot.foot.leg])];
-            let toe = ankle + Point::from_angle(turn(k)) * (FOOT * self.size);
-            LimbPose { ends: (ankle, toe), bend: Bend::STRAIGHT }
-        }));
-        limbs
-    }
+/// For each posture of the drawing's own motion the turns of its feet, if the document shows that posture.
+fn drawn_frames(known: &Shown, examples: &[Example], postures: &[Vec<Point>]) -> Vec<Option<Vec<f64>>> {
+    let told: Vec<usize> = (0..known.told.len()).filter(|&k| known.told[k]).collect();
+    let apart = |a: &[Point], b: &[Point]| {
+        let shift = told.iter().map(|&k| b[k] - a[k]).sum::<Point>() / told.len().max(1) as f64;
+        let square: f64 = told.iter().map(|&k| (a[k] + shift).distance_squared(b[k])).sum();
+        (square / told.len().max(1) as f64).sqrt() / known.template.torso_length(b).max(f64::MIN_POSITIVE)
+    };
+    let of = |posture: &Vec<Point>| {
+        let off = examples.iter().map(|example| (apart(posture, &example.posture), example));
+        let (off, nearest) = off.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        nearest.turns.clone().filter(|_| off <= ONE_POSTURE)
+    };
+    postures.iter().map(of).collect()
 }
 
 /// Refuses postures that are too far away to compute with.
@@ -158,28 +175,6 @@ fn computable(postures: &[Vec<Point>]) -> Result<(), PipelineError> {
             "clip, frame {frame}: found coordinates too large to compute with, expected smaller ones"
         ))),
     }
-}
-
-/// The clip's postures as those of the drawing's body: retargeted if the clip is of another body, and mirrored if it looks
-/// to the other side; and the chains that nothing moves.
-fn moves(
-    set: &LimbSet,
-    known: &Shown,
-    clip: &Clip,
-    chains: &[(String, String)],
-) -> Result<(Vec<Vec<Point>>, Vec<String>), PipelineError> {
-    let (postures, still) = if clip.template.same_points(&set.template) && chains.is_empty() {
-        (clip.postures.clone(), Vec::new())
-    } else {
-        let made = retarget(clip, &set.template, chains).map_err(wrong)?;
-        (made.clip.postures, made.still)
-    };
-    Ok((facing(known, &postures).unwrap_or(postures), still))
-}
-
-/// The last key point of a chain.
-fn end_of(chain: &[usize]) -> usize {
-    chain[chain.len() - 1]
 }
 
 fn check(clip: &Clip) -> Result<(), PipelineError> {
@@ -276,52 +271,4 @@ impl<'a> Poses<'a> {
         };
         self.set.limbs.iter().zip(&self.bends).map(one).collect()
     }
-}
-
-/// The feet of the drawing.
-fn feet(set: &LimbSet, parts: &[Part], rest: FrameNumber, limbs: &[LimbPose], posture: &[Point]) -> Vec<FootLimb> {
-    let (template, swapped): (&Template, bool) = (&set.template, set.swapped(rest));
-    let legs = template.legs();
-    let mut found: Vec<FootLimb> = Vec::new();
-    for (shin, limb) in set.limbs.iter().enumerate() {
-        let to = if swapped { template.mirror(limb.to) } else { limb.to };
-        let Some(leg) = legs.iter().position(|leg| end_of(leg) == to) else { continue };
-        let ankle = limbs[shin].ends.1;
-        let mut shoes: Vec<(String, f64, Vec<Point>)> = Vec::new();
-        let mut end = vec![ankle];
-        for carried in &limb.carries {
-            let outline = parts.iter().find(|p| p.name == carried.part && p.closed).and_then(|p| p.outline(rest));
-            let Some(outline) = outline else { continue };
-            let others = set.limbs.iter().enumerate().filter(|(k, _)| *k != shin);
-            let shared = others.flat_map(|(_, l)| &l.carries).any(|other| other.part == carried.part);
-            let middle = crate::geometry::polygon::center(&outline);
-            if !shared && limbs[shin].spline().nearest(middle).parameter > END {
-                shoes.push((carried.part.clone(), carried.turn, outline));
-            } else {
-                let reach = LEG_END * limbs[shin].ends.0.distance(ankle);
-                end.extend(outline.into_iter().filter(|p| p.distance(ankle) <= reach));
-            }
-        }
-        let turn = shoes.first().map(|(_, turn, _)| *turn);
-        let (parts, outline) = match shoes.is_empty() {
-            true => (limb.carries.iter().map(|c| c.part.clone()).collect(), end),
-            false => (shoes.iter().map(|s| s.0.clone()).collect(), shoes.iter().flat_map(|s| s.2.clone()).collect()),
-        };
-        let shape = outline.into_iter().map(|p| p - ankle).collect();
-        let foot = Foot { leg, shape, shin: posture[to] - posture[template.parent(to)], turn };
-        found.push(FootLimb { limb: limbs.len() + found.len(), shin, parts, foot });
-    }
-    found
-}
-
-/// The y of the ground: of the lowest foot, on most of the frames that show the drawing; none without feet.
-fn ground(parts: &[Part], feet: &[FootLimb], shown: &[(FrameNumber, Vec<Point>)]) -> Option<f64> {
-    let bottom = |frame: FrameNumber| {
-        let names = feet.iter().flat_map(|foot| &foot.parts);
-        let outlines = names.filter_map(|name| parts.iter().find(|p| p.name == *name)?.outline(frame));
-        outlines.flatten().map(|p| p.y).reduce(f64::max)
-    };
-    let mut low: Vec<f64> = shown.iter().filter_map(|(frame, _)| bottom(*frame)).collect();
-    low.sort_by(f64::total_cmp);
-    low.get((low.len().saturating_sub(1) as f64 * GROUND) as usize).copied()
 }

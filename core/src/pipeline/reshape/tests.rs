@@ -75,6 +75,7 @@ fn job(clip: &Clip) -> ReshapeJob<'_> {
         rest: None,
         over: None,
         chains: Vec::new(),
+        mirror: Mirror::Auto,
         options: Options::default(),
         points: BTreeMap::new(),
     }

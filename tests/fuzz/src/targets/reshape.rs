@@ -55,6 +55,7 @@ fn reshaped(mut document: Document, clip: &rototoon::scene::Clip, asked: &Reshap
         rest: asked.rest,
         over: None,
         chains: Vec::new(),
+        mirror: Default::default(),
         options: Options::default(),
         points: asked.points.clone(),
     };
