@@ -59,7 +59,7 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
 ///
 /// # Errors
 ///
-/// [`PipelineError::Option`] for a name that no clip has, [`PipelineError::Style`] or [`PipelineError::Cancelled`].
+/// [`PipelineError::Option`] for a name that no clip has, or one name for style and content, [`PipelineError::Style`] or [`PipelineError::Cancelled`].
 pub fn translate(
     clips: &Clips,
     request: &Request,
@@ -81,12 +81,25 @@ pub fn translate_and_judge(
     progress: &dyn Progress,
 ) -> Result<(Clips, Option<Sure>), PipelineError> {
     let made = style::translate_and_judge(&clips.clips, request, options, progress);
-    let (made, sure) = made.map_err(|error| match error {
+    let (made, sure) = made.map_err(failed)?;
+    Ok((Clips { clips: vec![made], fps: clips.fps }, sure))
+}
+
+/// A failed translation. What the request asks of clips that do not have it is the fault of an option.
+fn failed(error: StyleError) -> PipelineError {
+    match error {
         StyleError::Cancelled(cancelled) => PipelineError::Cancelled(cancelled),
         StyleError::Name { role, found, known } => {
             PipelineError::option(role, format!("found {found:?}, expected one of {known}"))
         }
+        StyleError::SameCharacter { character } => PipelineError::option(
+            "content",
+            format!("found {character:?}, the style's character, expected another one"),
+        ),
+        StyleError::Content { character, motion } => PipelineError::option(
+            "content",
+            format!("found no clip of {motion:?} by {character:?}, expected one to translate"),
+        ),
         other => PipelineError::Style(other.to_string()),
-    })?;
-    Ok((Clips { clips: vec![made], fps: clips.fps }, sure))
+    }
 }

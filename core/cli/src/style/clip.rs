@@ -44,5 +44,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     for (point, count) in &made.guessed {
         line("warning", &format!("{}: {point}: filled in on {count} of {frames} frames", from.display()));
     }
+    if frames == 1 {
+        let text = format!("found contours on frame {} only, so the clip has one posture and no motion", made.first);
+        line("note", &format!("{}: {text}", from.display()));
+    }
     Ok(made.clips.save(to)?)
 }

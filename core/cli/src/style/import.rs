@@ -6,7 +6,7 @@ use crate::render;
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::file;
-use rototoon::import::bvh::{JointMap, Options, Up, View, seen};
+use rototoon::import::bvh::{JointMap, MotionError, Options, Up, View, seen};
 use rototoon::project::Inputs;
 use rototoon::project::clips::Clips;
 use rototoon::project::output::check_writable;
@@ -95,7 +95,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         // Names of joints may be in any encoding of their country; nothing else is beyond ASCII.
         let bytes = file::bytes(file).map_err(|error| failed(&format!("cannot read: {error}")))?;
         let text = String::from_utf8_lossy(&bytes);
-        let made = seen(&text, &options).map_err(|error| failed(&error))?;
+        let made = seen(&text, &options).map_err(|error| match error {
+            // What the file does not have is asked for by an option.
+            MotionError::Frames { .. } | MotionError::Rate { .. } => {
+                Failure::Use(format!("{}: {}", file.display(), as_option(&error)))
+            }
+            other => failed(&other),
+        })?;
         let (character, motion) = labels(given, file)?;
         if let Some(twin) = clips.iter().position(|clip| clip.character == character && clip.motion == motion) {
             let twin = files[twin].display();
@@ -112,6 +118,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         clips.push(Clip::new(character, motion, made.postures));
     }
     Ok(Clips { clips, fps: options.fps.unwrap_or(1.0) }.save(to)?)
+}
+
+/// An error that begins with what was asked for, with the option's name in its place.
+fn as_option(error: &MotionError) -> String {
+    let text = error.to_string();
+    let reason = text.split_once(": ").map_or(text.as_str(), |(_, reason)| reason);
+    let option = if matches!(error, MotionError::Rate { .. }) { "fps" } else { "frames" };
+    format!("--{option}: {reason}")
 }
 
 fn options(given: &ArgMatches) -> Result<Options, Failure> {

@@ -71,6 +71,12 @@ fn errors_are_reported_and_nothing_is_written() {
         said(&good, &["--style", "nobody"], 2)
             .contains("clips.json: --style: found \"nobody\", expected one of old, plain, shy")
     );
+    let same = said(&good, &["--style", "plain"], 2);
+    assert!(same.contains("--content: found \"plain\", the style's character, expected another one"), "{same}");
+    let mut without = library();
+    without["clips"].as_array_mut().unwrap().retain(|clip| clip["character"] != "plain" || clip["motion"] != "run");
+    let error = said(&without.to_string(), &["--style", "old"], 2);
+    assert!(error.contains("--content: found no clip of \"run\" by \"plain\", expected one"), "{error}");
     let mut short = library();
     short["clips"][4]["points"][2].as_array_mut().unwrap().pop();
     let error = said(&short.to_string(), &["--style", "old"], 1);
@@ -323,5 +329,12 @@ fn motion_capture_becomes_clips() {
     );
     assert!(import(&[&lift, &lift]).1.contains("found \"lift\" by \"anna\", expected each motion of a character once"));
     assert_eq!(import(&[&lift, "--view", "above"]).0, Some(2));
+    let (status, said) = import(&[&lift, "--frames", "1-40"]);
+    assert!(
+        status == Some(2) && said.contains("lift.bvh: --frames: found 1 to 40, expected frames of the file, 0 to 2"),
+        "{said}"
+    );
+    let (status, said) = import(&[&lift, "--fps", "-2"]);
+    assert!(status == Some(2) && said.contains("--fps"), "{said}");
     assert_eq!(import(&[&path("none.bvh")]).0, Some(1));
 }

@@ -111,5 +111,55 @@ fn errors_name_their_file() {
     let done = reshape(&["--rest", "7"]);
     assert!(said(&done).contains("shot.json: --rest: found frame 7 without a contour of \"body\""), "{}", said(&done));
     assert_eq!(reshape(&["--sub-keys", "-1"]).status.code(), Some(2));
+    assert_eq!(reshape(&["--mirror", "perhaps"]).status.code(), Some(2));
+    for (chain, wanted) in [
+        ("arm=l_leg", "shot.json: --chain: found \"arm\", expected a chain of \"human\": one of torso, head, l_arm"),
+        ("l_arm=leg", "shot.json: --chain: found \"leg\", expected a chain of \"human\": one of torso, head, l_arm"),
+    ] {
+        let done = reshape(&["--chain", chain]);
+        assert_eq!(done.status.code(), Some(2));
+        assert!(said(&done).contains(wanted), "{}", said(&done));
+    }
     assert!(!folder.join("out.json").exists());
+}
+
+#[test]
+fn a_clip_without_motion_and_a_clip_that_is_mirrored_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "shot.json", &figure(4));
+    write(folder, "still.json", &figure(1));
+    let clip = |file: &str| {
+        let made = ["style", "clip", file, "--character", "a", "--motion", "b", "-o", "clips.json"];
+        let done = rototoon(folder, &made);
+        assert_eq!(done.status.code(), Some(0));
+        said(&done)
+    };
+    let note = "note: still.json: found contours on frame 0 only, so the clip has one posture and no motion";
+    assert!(clip("still.json").contains(note));
+    assert!(!clip("shot.json").contains("note:"));
+    // A clip of another figure with bent knees, which looks to the left; the drawing has no legs.
+    let mut clips = read(folder, "clips.json");
+    for posture in clips["clips"][0]["points"].as_array_mut().unwrap() {
+        posture[4][1] = json!(-40);
+        for knee in [12, 15] {
+            posture[knee][0] = json!(posture[knee][0].as_f64().unwrap() - 12.0);
+        }
+    }
+    write(folder, "clips.json", &clips);
+    let reshape = |mirror: &str| {
+        let fixed = ["style", "reshape", "still.json", "clips.json", "-o", "out.json", "--mirror"];
+        let done = rototoon(folder, &[&fixed[..], &[mirror]].concat());
+        assert!(done.status.success(), "{}", said(&done));
+        let body = &read(folder, "out.json")["parts"][0]["tracks"];
+        let x = |frame: &str| body[frame][0][0].as_f64().unwrap();
+        (said(&done), x("3") - x("0"))
+    };
+    let (text, way) = reshape("auto");
+    let wanted = "note: still.json: the drawing looks to a side that cannot be told and the clip left, so the clip is not mirrored (--mirror on)";
+    assert!(text.contains(wanted) && way > 2.0, "{text} {way}");
+    let (text, way) = reshape("on");
+    assert!(!text.contains("note:") && way < -2.0, "{text} {way}");
+    let (text, way) = reshape("off");
+    assert!(!text.contains("note:") && way > 2.0, "{text} {way}");
 }
