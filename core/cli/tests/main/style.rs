@@ -115,7 +115,7 @@ fn a_human_walk_moves_a_bird_by_named_chains() {
     assert!(done.status.success(), "{said}");
     assert!(
         said.contains("chain \"tail\": no chain of the clip belongs to it, so it stays still")
-            && !said.contains("wing")
+            && !said.contains("_wing")
     );
     let made: Value = serde_json::from_str(&std::fs::read_to_string(at("out.json")).unwrap()).unwrap();
     assert_eq!(made["skeleton"], "bird");
@@ -131,7 +131,7 @@ fn a_human_walk_moves_a_bird_by_named_chains() {
     assert!(failed(&["--chain", "l_arm"]).contains("expected two names of chains with = between them"));
     assert!(
         failed(&["--chain", "l_arm=wing"])
-            .contains("chains: found \"wing\", expected a chain of \"bird\": one of torso")
+            .contains("--chain: found \"wing\", expected a chain of \"bird\": one of torso")
     );
 }
 
@@ -334,7 +334,7 @@ fn motion_capture_becomes_clips() {
         status == Some(2) && said.contains("lift.bvh: --frames: found 1 to 40, expected frames of the file, 0 to 2"),
         "{said}"
     );
-    let (status, said) = import(&[&lift, "--fps", "-2"]);
+    let (status, said) = import(&[&lift, "--fps", "0"]);
     assert!(status == Some(2) && said.contains("--fps"), "{said}");
     assert_eq!(import(&[&path("none.bvh")]).0, Some(1));
 }

@@ -141,7 +141,7 @@ fn a_clip_without_motion_and_a_clip_that_is_mirrored_are_noted() {
     // A clip of another figure with bent knees, which looks to the left; the drawing has no legs.
     let mut clips = read(folder, "clips.json");
     for posture in clips["clips"][0]["points"].as_array_mut().unwrap() {
-        posture[4][1] = json!(-40);
+        posture[10][1] = json!(90);
         for knee in [12, 15] {
             posture[knee][0] = json!(posture[knee][0].as_f64().unwrap() - 12.0);
         }

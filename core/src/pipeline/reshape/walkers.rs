@@ -177,8 +177,8 @@ fn a_human_drawing_that_looks_left_goes_left() {
         let (other, report) = on(&right, &clip, Mirror::Auto);
         assert_eq!((report.mirrored, report.sides.unwrap().drawing), (false, Some(Side::Right)));
         for (a, b) in flipped_tracks(&other).iter().zip(tracks(&made)) {
-            // A mesh and its mirror image have other triangles.
-            assert!(a.distance(b) < 1.0, "{a} {b}");
+            // A mesh and that of the mirror image have other triangles.
+            assert!(a.distance(b) < 3.0, "{a} {b}");
         }
         let way = |document: &Document| part(document, "body", FRAMES - 1)[0].x - part(document, "body", 0)[0].x;
         assert!(way(&made) < -40.0);
