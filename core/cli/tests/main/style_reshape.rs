@@ -142,6 +142,7 @@ fn a_clip_without_motion_and_a_clip_that_is_mirrored_are_noted() {
     let mut clips = read(folder, "clips.json");
     for posture in clips["clips"][0]["points"].as_array_mut().unwrap() {
         posture[10][1] = json!(90);
+        posture[7] = json!([66, 64]);
         for knee in [12, 15] {
             posture[knee][0] = json!(posture[knee][0].as_f64().unwrap() - 12.0);
         }
