@@ -307,6 +307,40 @@ mod tests {
         assert_eq!(picture(&[front], 6, 5).get(5, 2), [0.0; 4]);
     }
 
+    /// A stroke of a width along a level line.
+    fn stroke(from: f64, to: f64, width: f64, colour: Colour) -> Region {
+        let ends = [Point::new(from, 3.0), Point::new(to, 3.0)];
+        let areas = crate::stroke::areas(&ends, &[0.5 * width; 2], false);
+        Region { areas, ..region(Vec::new(), colour) }
+    }
+
+    #[test]
+    fn strokes_at_one_place_are_no_denser_than_one() {
+        let column = |regions: &[Region]| {
+            let found = picture(regions, 20, 6);
+            (0..6).map(|y| found.get(9, y)[3]).collect::<Vec<_>>()
+        };
+        let thick = || stroke(2.0, 18.0, 3.0, RED);
+        assert_eq!(column(&[thick()]), [0.0, 0.5, 1.0, 1.0, 0.5, 0.0]);
+        assert_eq!(column(&[thick(), thick()]), [0.0, 0.5, 1.0, 1.0, 0.5, 0.0]);
+        let thin = || stroke(2.0, 18.0, 2.4, RED);
+        let found = column(&[thin(), thin(), thin()]);
+        assert!(found.iter().zip([0.0, 0.2, 1.0, 1.0, 0.2, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6), "{found:?}");
+        // Two that meet end to end are one.
+        let (first, second) = (stroke(2.0, 9.3, 3.0, RED), stroke(9.3, 18.0, 3.0, RED));
+        assert_eq!(column(&[first, second]), [0.0, 0.5, 1.0, 1.0, 0.5, 0.0]);
+        // On paint, two lines leave what one leaves.
+        let paper = || region(rectangle(0.0, 0.0, 20.0, 6.0), [1.0; 3]);
+        let black = || stroke(2.0, 18.0, 3.0, [0.0; 3]);
+        assert_eq!(picture(&[paper(), black(), black()], 20, 6).get(9, 1), [0.5, 0.5, 0.5, 1.0]);
+        // The nearer one hides the other, and a faint one shows it.
+        let front = |opacity| Region { opacity, ..stroke(2.0, 18.0, 3.0, RED) };
+        let behind = || stroke(2.0, 18.0, 3.0, [0.0, 0.0, 1.0]);
+        assert_eq!(picture(&[behind(), front(1.0)], 20, 6).get(9, 1), [0.5, 0.0, 0.0, 0.5]);
+        assert_eq!(picture(&[behind(), front(0.25)], 20, 6).get(9, 1), [0.125, 0.0, 0.375, 0.5]);
+        assert_eq!(picture(&[front(0.5), front(0.5)], 20, 6).get(9, 2), [0.75, 0.0, 0.0, 0.75]);
+    }
+
     #[test]
     fn regions_of_any_size_and_place_are_drawn() {
         for outline in
@@ -385,6 +419,22 @@ mod tests {
                     left: left + x, top: top + y, right: left + x + 1, bottom: top + y + 1,
                 }).is_none()) {
                     prop_assert_eq!(piece.get(x as usize, y as usize), [0.0; 4]);
+                }
+            }
+        }
+
+        #[test]
+        fn shares_are_what_unions_leave(corners in prop::collection::vec(prop::array::uniform6(-4.0f64..74.0), 1..7)) {
+            let triangle = |c: &[f64; 6]| c.chunks(2).map(|p| Point::new(0.3 * p[0], p[1])).collect::<Vec<_>>();
+            let outlines: Vec<_> = corners.iter().map(triangle).collect();
+            let regions: Vec<_> = outlines.iter().map(|outline| region(outline.clone(), RED)).collect();
+            let shares = shares(&regions, 20, 70);
+            let unions: Vec<_> = (0..=outlines.len()).map(|n| crate::matte::coverage(&outlines[n..], 20, 70)).collect();
+            for (at, pixel) in shares.pixels().enumerate() {
+                for part in 0..outlines.len() {
+                    let expected = unions[part].data()[at] - unions[part + 1].data()[at];
+                    let found: f32 = pixel.iter().filter(|s| s.part == part).map(|s| s.coverage).sum();
+                    prop_assert!((found - expected).abs() < 2e-5, "{at} {part}: {found} {expected}");
                 }
             }
         }

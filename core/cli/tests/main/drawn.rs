@@ -234,3 +234,22 @@ fn pictures_have_the_pixel_aspect_of_the_footage() {
         assert!(told(b"chromaticities\0chromaticities\0\x20\0\0\0") && told(b"framesPerSecond\0rational\0\x08\0\0\0"));
     }
 }
+
+#[test]
+fn an_svg_has_the_mean_width_of_each_frame_and_says_so() {
+    let stroke = |track: usize, widths: [f64; 2]| json!({"track": track, "points": [[5, 15], [35, 15]], "closed": false, "widths": widths, "colour": [0, 0, 0]});
+    let traced = |first: Value, second: Value| json!({"traced": [{"frame": 0, "strokes": [first]}, {"frame": 1, "strokes": [second]}]});
+    let export = |fields: Value| {
+        let (folder, path) = project(fields);
+        let to = folder.path().join("a.svg");
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(path).arg("-o").arg(&to).output().unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        (fs::read_to_string(to).unwrap(), told(&output))
+    };
+    let (text, said) = export(traced(stroke(4, [3.0, 3.0]), stroke(4, [1.0, 9.0])));
+    assert!(text.contains("attributeName=\"stroke-width\"") && text.contains("values=\"3;5\""), "{text}");
+    assert!(said.contains("a.svg: stroke 4 has a width that varies along the line"), "{said}");
+    let (text, said) = export(traced(stroke(4, [3.0, 3.1]), stroke(5, [3.1, 3.0])));
+    assert!(!text.contains("attributeName=\"stroke-width\"") && said.is_empty(), "{text} {said}");
+}
