@@ -268,7 +268,10 @@ mod tests {
         [(x0, y0), (x1, y0), (x1, y1), (x0, y1)].map(|(x, y)| Point::new(x, y)).into()
     }
 
-    fn found(regions: &[(Vec<Vec<Point>>, Vec<Vec<Point>>, f32)], x: i64, y: i64) -> Vec<f64> {
+    /// Areas, holes and opacity of a region.
+    type Region = (Vec<Vec<Point>>, Vec<Vec<Point>>, f32);
+
+    fn found(regions: &[Region], x: i64, y: i64) -> Vec<f64> {
         let borders: Vec<Borders> = regions.iter().map(|(a, h, _)| Borders::new(a, h, BAND)).collect();
         let layers: Vec<_> = borders.iter().zip(regions).map(|(b, r)| (Layer::Partly(b), r.2)).collect();
         shown(&layers, x, y)
