@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xd4cf67d3386f1fe5
+HEADER_HASH = 0x9cd7bdd140f6d718
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
