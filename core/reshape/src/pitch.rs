@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn a_foot_is_flat_then_rolls_off_then_swings() {
         let ankles = [0.0, 0.0, 0.0, 0.0, -4.0, -9.0, -30.0, -30.0, -30.0, -30.0, -30.0];
-        let turns = pitches(&foot(), &LEG, &postures(&ankles), (&[1..4], 8.0), &[]);
+        let turns = pitches(&foot(), &LEG, &postures(&ankles), (std::slice::from_ref(&(1..4)), 8.0), &[]);
         assert_eq!(turns[1..4], [0.0; 3]);
         for (t, risen) in [(4, 4.0f64), (5, 9.0)] {
             assert!((turns[t] - (risen / 14.0).asin()).abs() < 1e-9, "frame {t}: {}", turns[t]);
@@ -139,8 +139,8 @@ mod tests {
         let ankles = [0.0; 12];
         let mut drawn = vec![None; 12];
         drawn[8] = Some(1.3);
-        let turns = pitches(&foot(), &LEG, &postures(&ankles), (&[0..5], -100.0), &drawn);
-        let plain = pitches(&foot(), &LEG, &postures(&ankles), (&[0..5], -100.0), &[]);
+        let turns = pitches(&foot(), &LEG, &postures(&ankles), (std::slice::from_ref(&(0..5)), -100.0), &drawn);
+        let plain = pitches(&foot(), &LEG, &postures(&ankles), (std::slice::from_ref(&(0..5)), -100.0), &[]);
         assert_eq!(turns[8], 1.3);
         let off: Vec<f64> = turns.iter().zip(&plain).map(|(a, b)| a - b).collect();
         assert!(off[..5].iter().all(|off| *off == 0.0), "the contact stays flat: {off:?}");
@@ -149,7 +149,7 @@ mod tests {
         // In a contact it fades within the contact.
         drawn[8] = None;
         drawn[4] = Some(0.4);
-        let turns = pitches(&foot(), &LEG, &postures(&ankles), (&[0..5], -100.0), &drawn);
+        let turns = pitches(&foot(), &LEG, &postures(&ankles), (std::slice::from_ref(&(0..5)), -100.0), &drawn);
         assert!(turns[4] == 0.4 && turns[3] > turns[2] && turns[1] > 0.0 && turns[0] == 0.0, "{turns:?}");
         assert_eq!(turns[5..], plain[5..]);
     }
