@@ -6,6 +6,7 @@ use crate::common::{
 };
 use rototoon::geometry::Point;
 use rototoon::project::Document;
+use rototoon::render::header::{BT709, Facts, describe};
 use rototoon::scene::Scene;
 use rototoon_ofx_host::{ClipSettings, Effect, Host, Picture, Region, Settings};
 
@@ -383,6 +384,8 @@ fn ids_for_keyers_are_written_for_each_frame_of_the_composition() {
     // The same bytes as those of the command line's function for the document's frame.
     let scene = Document::parse(&squares(), "squares").unwrap().scene;
     let wanted = rototoon::render::id_picture(&scene, 2, None, rototoon::render::Format::Exr).unwrap();
+    let facts = Facts { pixel_aspect: 1.0, chromaticities: BT709, fps: scene.footage.fps, time_code: None };
+    let wanted = describe(wanted, &facts);
     assert!(std::fs::read(folder.path().join("ids_1003.exr")).unwrap() == wanted);
     effect.set_text("exportFile", folder.path().join("ids.exr").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
