@@ -10,8 +10,6 @@
 //! together. A person drew them again, and where a face turns or a sack is squashed, each stroke goes its own way; the ink of one
 //! may come to lie on that of others, and says nothing.
 //!
-//! Pairs made by hand are carried out in every span. In one that is held only their strokes move.
-//!
 //! In a span that flows, the strokes of the earlier key flow ahead and are exchanged half way for those of the later key, which
 //! have flowed back until then. Pairs that agree with the flow, and pairs made by hand, are not exchanged: their strokes go
 //! from one shape to the other. Strokes on given pegs go with their pegs.
@@ -44,7 +42,7 @@ const TOLD_APART: f64 = 0.75;
 /// From this number of strokes on, what lies together must stay together by this share. Then less ink need be told apart, and the likeness may be
 /// less if all strokes are paired. Drawings that a rig drew twice have 0.75 or more, but for a sack that is squashed entirely; 24 pairs
 /// of drawings of ten and twenty equal bars at random have 0.68 or less.
-const MANY: usize = 10;
+const MANY: usize = 12;
 const TOGETHER: f64 = 0.7;
 const HALF_TOLD_APART: f64 = 0.5;
 const FAINTLY_ALIKE: f64 = 0.5;
@@ -137,12 +135,6 @@ fn together(matching: &Matching, first: &[Stroke], second: &[Stroke]) -> f64 {
     if count > 0 { sum / count as f64 } else { 1.0 }
 }
 
-/// A matching of the pairs made by hand alone. Nothing vanishes or appears: the other strokes are held.
-fn by_hand(matching: &Matching) -> Matching {
-    let pairs = matching.pairs.iter().filter(|pair| pair.by_hand).copied().collect();
-    Matching { pairs, ..Matching::default() }
-}
-
 /// Places on the first drawing with their counterparts, from pairs that are evident.
 fn known(first: &[Stroke], second: &[Stroke], matching: &Matching) -> Vec<(Point, Point)> {
     let evident = matching.pairs.iter().filter(|pair| pair.by_hand || pair.confidence >= EVIDENT);
@@ -203,20 +195,14 @@ impl Sequence {
                 ways[k] = chosen(first, second, &given[k], &self.half_way(k), self.progress[k].clone());
             }
         }
-        let told = |k: usize| given[k].pairs.iter().any(|pair| pair.by_hand);
-        let anew = |(k, way): (usize, &Way)| matches!(way, Way::Flows(..)) || (*way == Way::Held && told(k));
-        if !ways.iter().enumerate().any(anew) {
+        if !ways.iter().any(|way| matches!(way, Way::Flows(..))) {
             return Self { ways, ..self };
         }
         let (mut matchings, mut exchanged) = (self.matchings.clone(), self.exchanged.clone());
         for (k, way) in ways.iter().enumerate() {
-            match way {
-                Way::Flows(flow, _) => {
-                    let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
-                    (matchings[k], exchanged[k]) = kept(first, second, &given[k], flow);
-                }
-                Way::Held if told(k) => (matchings[k], exchanged[k]) = (by_hand(&given[k]), Default::default()),
-                _ => {}
+            if let Way::Flows(flow, _) = way {
+                let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
+                (matchings[k], exchanged[k]) = kept(first, second, &given[k], flow);
             }
         }
         let flowing = Self::carried(self.keys.clone(), matchings, exchanged, pegs, &self.options, base);
@@ -422,21 +408,6 @@ mod tests {
         second.sort_by_key(|stroke| (stroke.points[0].y as i64 * 37) % 101);
         let matching = Matching { pairs: pairs(12), ..Matching::default() };
         assert!(!is_whole(&matching, &first, &second), "what lay together is scattered");
-    }
-
-    #[test]
-    fn in_a_span_that_is_held_only_pairs_made_by_hand_move() {
-        let (first, second) = strangers();
-        let pairs = (0..9).map(|k| paired(k, 0.7, k == 3)).collect();
-        let matching = Matching { pairs, vanished: vec![9, 10, 11], appeared: vec![9, 10, 11], ..Matching::default() };
-        let told = sequence(&first, &second, matching);
-        assert_eq!(told.ways, [Way::Held]);
-        let drawn = told.at(4);
-        assert_eq!(drawn.len(), 12, "no stroke is drawn twice");
-        for (k, stroke) in first.iter().enumerate() {
-            let away = drawn[k].stroke.points[0].distance(stroke.points[0]);
-            assert_eq!(away > 5.0, k == 3, "stroke {k} is {away} px from its place");
-        }
     }
 
     #[test]

@@ -358,10 +358,10 @@ impl Sequence {
         let (from, to) = (&self.keys[k], &self.keys[k + 1]);
         let u = (f64::from(frame) - f64::from(from.frame)) / (f64::from(to.frame) - f64::from(from.frame));
         let present = self.present(k);
-        let maps = self.motion.maps(k, u, f64::from(frame));
         if self.is_held(k) {
-            return present.into_iter().filter_map(|t| self.held_at(t, k, u, &maps)).collect();
+            return present.into_iter().filter_map(|t| self.held_at(t, k)).collect();
         }
+        let maps = self.motion.maps(k, u, f64::from(frame));
         let mut points = vec![Vec::new(); self.tracks.len()];
         let mut opacity = vec![1.0; self.tracks.len()];
         for &t in &present {

@@ -7,7 +7,6 @@
 use super::flowing::Way;
 use super::{InBetween, Sequence, Track};
 use crate::stroke::Stroke;
-use rototoon_base::geometry::similarity::Similarity;
 use std::collections::BTreeSet;
 
 impl Sequence {
@@ -74,22 +73,9 @@ impl Sequence {
         own.into_iter().map(|(_, t)| t).collect()
     }
 
-    /// A track of the earlier key in a span in which that key is held. Only pairs made by hand move. `None` if the key does not have
-    /// it.
-    pub(super) fn held_at(
-        &self,
-        t: usize,
-        k: usize,
-        u: f64,
-        maps: &(Vec<Similarity>, Vec<Similarity>),
-    ) -> Option<InBetween> {
-        let own = self.tracks[t].at(k)?.stroke;
-        let told = self.matchings[k].pairs.iter().any(|pair| pair.by_hand && pair.from == own);
-        let (points, u) = if told && self.tracks[t].at(k + 1).is_some() {
-            (self.moved(t, k, u, &self.motion.of_track(t, maps)).0, u)
-        } else {
-            (self.tracks[t].points(k)?.clone(), 0.0)
-        };
-        Some(InBetween { stroke: Stroke { points, ..self.look(t, k, u) }, track: t, opacity: 1.0 })
+    /// A track of the earlier key in a span in which that key is held. `None` if the key does not have it.
+    pub(super) fn held_at(&self, t: usize, k: usize) -> Option<InBetween> {
+        let points = self.tracks[t].points(k)?.clone();
+        Some(InBetween { stroke: Stroke { points, ..self.look(t, k, 0.0) }, track: t, opacity: 1.0 })
     }
 }
