@@ -143,8 +143,7 @@ fn known(first: &[Stroke], second: &[Stroke], pair: &Pair) -> Known {
         (true, false) => 1.0 - s,
     };
     let from = samples(a, &|s| s);
-    // What an artist left where it was says nothing of a stroke that was moved.
-    let evident = pair.by_hand || (pair.confidence >= EVIDENT && a.points != b.points);
+    let evident = pair.by_hand || pair.confidence >= EVIDENT;
     Known { middle: polygon::center(&from), from, to: samples(b, &on_other), evident }
 }
 

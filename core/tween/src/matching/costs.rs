@@ -18,9 +18,6 @@ use rototoon_base::geometry::{Point, polygon};
 const SHAPE: f64 = 2.0;
 /// Weight of the squared turn, in rad², of a stroke relative to the drawing around it.
 const TURN: f64 = 0.06;
-/// Cost of a stroke that stays at rest while the drawing around it moves. A part that stands still beside others that move is as usual as one
-/// that goes with them.
-const REST: f64 = 0.35;
 /// Weight of the squared logarithm of a stroke's growth relative to the drawing around it.
 const SIZE: f64 = 1.0;
 /// Weight of the squared logarithm of the growth in length relative to the growth in size.
@@ -256,9 +253,10 @@ fn cheapest(
 /// The ways to lay stroke `i` on `j` with their costs, the most likely first.
 fn labels((a, b): (&Figure, &Figure), ways: &Ways, (i, j): (usize, usize), around: &Movement) -> Vec<Label> {
     let (Some(unlike), Some((p, q))) = (ways.unlike(a, i, b, j), a.comparable(i, b, j)) else { return Vec::new() };
-    let expected = Expected::new(a, i, around);
+    let base = unlike.under(&Expected::new(a, i, around));
     let ways = ways.likely(a, i, b, j, around.turn, TURN / SHAPE).into_iter().map(|way| {
-        let cost = unlike.cost + SHAPE * way.residual + expected.missed(&unlike, Some(way.turn));
+        let turn = wrap(way.turn - around.turn);
+        let cost = base + SHAPE * way.residual + TURN * turn * turn;
         Label { to: j, way, map: p.movement(q, &way), cost }
     });
     ways.collect()
@@ -275,47 +273,19 @@ struct Unlike {
     centre: Point,
 }
 
-/// Where a movement takes a stroke, and where it stands if it stays.
+/// Where a movement takes a stroke.
 struct Expected {
-    moved: Place,
-    still: Place,
-}
-
-/// Where a stroke should be on the other drawing.
-struct Place {
     centre: Point,
-    /// In radians.
-    turn: f64,
     /// Logarithm of the growth.
     growth: f64,
-    /// The drawing's radius there, in pixels.
+    /// The drawing's radius after the movement, in pixels.
     radius: f64,
 }
 
 impl Expected {
     fn new(a: &Figure, i: usize, around: &Movement) -> Self {
-        let own = a.outlines[i].as_ref().map_or(Point::ZERO, |outline| outline.centre);
-        let moved = Place {
-            centre: around.apply(own),
-            turn: around.turn,
-            growth: around.scale.ln(),
-            radius: a.radius * around.scale,
-        };
-        Self { moved, still: Place { centre: own, turn: 0.0, growth: 0.0, radius: a.radius } }
-    }
-
-    /// The cost of where the other stroke is, of its size, and of its turn if that is known.
-    fn missed(&self, unlike: &Unlike, turn: Option<f64>) -> f64 {
-        self.moved.missed(unlike, turn).min(self.still.missed(unlike, turn) + REST)
-    }
-}
-
-impl Place {
-    fn missed(&self, unlike: &Unlike, turn: Option<f64>) -> f64 {
-        let size = unlike.growth - self.growth;
-        let square = self.centre.distance_squared(unlike.centre) / (self.radius * self.radius);
-        let turn = turn.map_or(0.0, |turn| wrap(turn - self.turn));
-        TURN * turn * turn + SIZE * size * size + POSITION * square / (1.0 + square / FAR)
+        let centre = a.outlines[i].as_ref().map_or(Point::ZERO, |outline| around.apply(outline.centre));
+        Self { centre, growth: around.scale.ln(), radius: a.radius * around.scale }
     }
 }
 
@@ -330,7 +300,9 @@ impl Unlike {
 
     /// A lower bound of the cost of this pair: everything but the fit of the shapes and the turn.
     fn under(&self, expected: &Expected) -> f64 {
-        self.cost + expected.missed(self, None)
+        let size = self.growth - expected.growth;
+        let square = expected.centre.distance_squared(self.centre) / (expected.radius * expected.radius);
+        self.cost + SIZE * size * size + POSITION * square / (1.0 + square / FAR)
     }
 }
 
@@ -343,13 +315,11 @@ pub(super) fn bound((a, b): (&Figure, &Figure), ways: &Ways, movement: &Movement
     let columns = there(b);
     let of = |i: usize| {
         let expected = Expected::new(a, i, movement);
-        let unlike: Vec<Option<Unlike>> = columns.iter().map(|&j| ways.unlike(a, i, b, j)).collect();
-        let base = |unlike: &Option<Unlike>| unlike.map_or(f64::INFINITY, |unlike| unlike.under(&expected));
-        let bases: Vec<f64> = unlike.iter().map(base).collect();
+        let base = |&j: &usize| ways.unlike(a, i, b, j).map_or(f64::INFINITY, |unlike| unlike.under(&expected));
+        let bases: Vec<f64> = columns.iter().map(base).collect();
         let whole = |k: usize| {
-            let Some(unlike) = unlike[k] else { return f64::INFINITY };
-            let way = |way: &Way| SHAPE * way.residual + expected.missed(&unlike, Some(way.turn));
-            unlike.cost + ways.least(a, i, b, columns[k], way)
+            let way = |way: &Way| SHAPE * way.residual + TURN * wrap(way.turn - movement.turn).powi(2);
+            bases[k] + ways.least(a, i, b, columns[k], way)
         };
         // Trying the likeliest counterpart first spares the look at most of the others.
         let first = (0..bases.len()).min_by(|&x, &y| bases[x].total_cmp(&bases[y]));
