@@ -200,14 +200,19 @@ pub(super) fn spacing(written: &WrittenTiming) -> Result<Spacing, String> {
     Ok(match written {
         WrittenTiming::Smooth => Spacing::Smooth,
         WrittenTiming::Chart(shares) => Spacing::Chart(shares.clone()),
-        other => Spacing::Timing(timing(other).map_err(|error| error.replacen("constant,", "smooth, constant,", 1))?),
+        other => Spacing::Timing(movement(other, "smooth, ")?),
     })
 }
 
 fn timing(written: &WrittenTiming) -> Result<Timing, String> {
+    movement(written, "")
+}
+
+/// A movement function. Errors name `also` before the names of functions.
+fn movement(written: &WrittenTiming, also: &str) -> Result<Timing, String> {
     let wrong = |found: &str| {
         let known = "constant, linear, ease_in, ease_out, ease_in_out, cosine or bounce";
-        format!("found {found}, expected a movement function: {known}")
+        format!("found {found}, expected a movement function: {also}{known}")
     };
     match written {
         WrittenTiming::Smooth => Ok(Timing::EaseInOut),
