@@ -8,7 +8,8 @@
 //! **Not more guiding points than points.** Where noise is as large as the limit, straight lines between some of the points
 //! are what is left, and each has two guiding points. The points themselves may then do better: as guiding points they give
 //! a curve that is within half a pixel of all of them where they are pixels. Only a line whose corners are farther apart
-//! than the tolerance can need more guiding points than it has points: each corner needs two.
+//! than the tolerance can need more guiding points than it has points: each corner needs two. A rung whose guiding points are
+//! the points has reached the noise. It has no corners, so it is not taken for having fewer of them.
 //!
 //! Limits: two tolerances between the same two rungs are not compared with each other. No rung is tried that is as small
 //! as the noise of the points.
@@ -42,7 +43,7 @@ pub(super) fn fit(points: &[Point], closed: bool, tolerance: f64) -> (Cleaned, W
         }
         let stricter = source.fit(limit);
         let fewer = |size: fn(&Whole) -> usize| size(&stricter.1) < size(&best.1);
-        if fewer(pieces) || fewer(corner_count) {
+        if fewer(pieces) || (fewer(corner_count) && !is_on_points(&stricter)) {
             (best, missed) = (stricter, false);
         } else if missed || pieces(&stricter.1) as f64 > HARDLY_MORE * pieces(&best.1) as f64 {
             return best;
@@ -59,6 +60,11 @@ fn pieces(whole: &Whole) -> usize {
 
 fn corner_count(whole: &Whole) -> usize {
     whole.spline.corners().len()
+}
+
+/// Whether a fit has a guiding point for each point. Such a curve has no corners, whatever the line has.
+fn is_on_points((data, whole): &(Cleaned, Whole)) -> bool {
+    whole.spline.guides().len() >= data.points.len()
 }
 
 /// A line to fit.
