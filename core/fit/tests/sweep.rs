@@ -146,7 +146,8 @@ proptest! {
     fn random_curves_are_steady(seed in 0u64..10_000, sides: bool) {
         let shape = if sides { random_sides(seed) } else { random_outline(seed) };
         for line in of(&format!("seed {seed}, sides {sides}"), &shape, false) {
-            check_steady(&line, [0.7, 1.0, 2.0, 5.0].into_iter());
+            // Rungs of the ladder in `steady`: of two tolerances between the same two rungs, nothing is promised.
+            check_steady(&line, [0.5f64.sqrt(), 1.0, 2.0, 4.0].into_iter());
         }
     }
 

@@ -12,6 +12,9 @@
 //!
 //! A pair far below certainty is judged by its place alone; the surer a pair is, the farther it may go its own way: an arm
 //! that swings is sure, because it looks like itself.
+//!
+//! Strokes that stand show nothing, as those that are copied from the drawing before: a ball that falls is not judged by the ground
+//! line. The only evident pair that moves is carried out.
 
 use super::super::grid::Grid;
 use super::super::ink;
@@ -31,7 +34,7 @@ const NEIGHBOURS: usize = 5;
 /// A pair without any confidence may end its own size, and this share of its way, away from where it should have gone.
 const OWN: f64 = 1.0;
 const WAY: f64 = 0.25;
-/// Least distance that is allowed, in pixels.
+/// Least distance that is allowed, and the largest of a stroke that stands, in pixels.
 const LEAST: f64 = 3.0;
 /// Number of samples of a stroke.
 const SAMPLES: usize = 8;
@@ -74,7 +77,7 @@ pub(super) fn carried_out(first: &[Stroke], second: &[Stroke], matching: &Matchi
         let pair = &matching.pairs[*k];
         let around = around(&known, *k);
         let (a, b) = (&first[pair.from], &second[pair.to]);
-        let sure = pair.confidence >= SURE || agrees(&known[*k], &around, pair.confidence);
+        let sure = pair.confidence >= SURE || is_only_mover(&known, *k) || agrees(&known[*k], &around, pair.confidence);
         pair.by_hand || (sure && !goes_astray(a, b, pair, &around, size))
     };
     let (kept, flying): (Vec<usize>, Vec<usize>) = (0..known.len()).partition(keeps);
@@ -143,8 +146,16 @@ fn known(first: &[Stroke], second: &[Stroke], pair: &Pair) -> Known {
         (true, false) => 1.0 - s,
     };
     let from = samples(a, &|s| s);
-    let evident = pair.by_hand || pair.confidence >= EVIDENT;
-    Known { middle: polygon::center(&from), from, to: samples(b, &on_other), evident }
+    let to = samples(b, &on_other);
+    let stands = from.iter().zip(&to).all(|(p, q)| p.distance(*q) <= LEAST);
+    // What stands still shows nothing: a ground line and copied strokes stand whatever else moves.
+    let evident = pair.by_hand || (pair.confidence >= EVIDENT && !stands);
+    Known { middle: polygon::center(&from), from, to, evident }
+}
+
+/// Whether a pair is evident and no other evident pair moves. Nothing shows then where it should have gone.
+fn is_only_mover(known: &[Known], k: usize) -> bool {
+    (0..known.len()).all(|j| known[j].evident == (j == k))
 }
 
 /// Whether a pair ends near the place where its neighbourhood went.
@@ -225,6 +236,21 @@ mod tests {
         let mut by_hand = pairs(0.1, all);
         by_hand.pairs[4].by_hand = true;
         assert!(as_given(&far, &by_hand));
+    }
+
+    #[test]
+    fn what_stands_does_not_judge_what_moves() {
+        let ground: Vec<Stroke> = (0..4).map(|k| bar(0.0, 15.0 * f64::from(k))).collect();
+        let with = |last: Stroke| ground.iter().cloned().chain([last]).collect::<Vec<_>>();
+        let (first, second) = (with(bar(0.0, 60.0)), with(bar(220.0, -80.0)));
+        let matching = pairs(0.7, [0, 1, 2, 3, 4]);
+        assert_eq!(carried_out(&first, &second, &matching).matching, matching);
+        let unsure = pairs(0.5, [0, 1, 2, 3, 4]);
+        assert_eq!(carried_out(&first, &second, &unsure).exchanged, [vec![4], vec![4]]);
+        // A line of the ground that was drawn anew, four pixels beside, does show where things go.
+        let drawn_anew = with(bar(220.0, -80.0)).into_iter().enumerate();
+        let second: Vec<Stroke> = drawn_anew.map(|(k, s)| if k == 3 { bar(4.0, 45.0) } else { s }).collect();
+        assert_eq!(carried_out(&first, &second, &matching).exchanged, [vec![4], vec![4]]);
     }
 
     /// A box whose outline goes on as a tail on the first drawing only.
