@@ -13,8 +13,7 @@
 //! A pair far below certainty is judged by its place alone; the surer a pair is, the farther it may go its own way: an arm
 //! that swings is sure, because it looks like itself.
 //!
-//! Strokes that stand show nothing, as those that are copied from the drawing before: a ball that falls is not judged by the ground
-//! line. The only evident pair that moves is carried out.
+//! The only evident pair that moves is carried out: a ball that falls is not judged by the ground line.
 
 use super::super::grid::Grid;
 use super::super::ink;
@@ -58,6 +57,7 @@ struct Known {
     to: Vec<Point>,
     middle: Point,
     evident: bool,
+    stands: bool,
 }
 
 /// What is carried out between two drawings.
@@ -148,14 +148,14 @@ fn known(first: &[Stroke], second: &[Stroke], pair: &Pair) -> Known {
     let from = samples(a, &|s| s);
     let to = samples(b, &on_other);
     let stands = from.iter().zip(&to).all(|(p, q)| p.distance(*q) <= LEAST);
-    // What stands still shows nothing: a ground line and copied strokes stand whatever else moves.
-    let evident = pair.by_hand || (pair.confidence >= EVIDENT && !stands);
-    Known { middle: polygon::center(&from), from, to, evident }
+    let evident = pair.by_hand || pair.confidence >= EVIDENT;
+    Known { middle: polygon::center(&from), from, to, evident, stands }
 }
 
-/// Whether a pair is evident and no other evident pair moves. Nothing shows then where it should have gone.
+/// Whether a pair is the only evident one that moves. Nothing shows then where it should have gone.
 fn is_only_mover(known: &[Known], k: usize) -> bool {
-    (0..known.len()).all(|j| known[j].evident == (j == k))
+    let moves = |known: &Known| known.evident && !known.stands;
+    (0..known.len()).all(|j| moves(&known[j]) == (j == k))
 }
 
 /// Whether a pair ends near the place where its neighbourhood went.
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn what_stands_does_not_judge_what_moves() {
+    fn what_stands_does_not_judge_the_only_stroke_that_moves() {
         let ground: Vec<Stroke> = (0..4).map(|k| bar(0.0, 15.0 * f64::from(k))).collect();
         let with = |last: Stroke| ground.iter().cloned().chain([last]).collect::<Vec<_>>();
         let (first, second) = (with(bar(0.0, 60.0)), with(bar(220.0, -80.0)));
