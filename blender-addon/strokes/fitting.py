@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from rototoon import Strokes, fit_strokes
 
-from ..blender import camera as cameras
+from ..blender import drawn_plane
 from ..blender import strokes as st
 from ..blender.errors import Problem
 
@@ -127,11 +127,7 @@ def _doubled(points: np.ndarray, values: np.ndarray, closed: bool, limits: np.nd
 def _flattened(content: st.Content, old: np.ndarray, scale: float):
     """Pixels (N, 2) in the drawing's plane, the values to blend as columns, and the columns of each attribute."""
     points = content.point["position"][old].astype(np.float64)
-    origin, normal = cameras.plane_of(points, np.array([0.0, 1.0, 0.0]))
-    aside = np.eye(3)[np.abs(normal).argmin()]
-    across = np.cross(normal, aside)
-    across /= np.linalg.norm(across)
-    axes = np.stack([across, np.cross(normal, across), normal])
+    origin, axes = points.mean(0), drawn_plane.axes(drawn_plane.normal([points]))
     local = (points - origin) @ axes.T * scale
     layout, columns, at = {}, [local[:, 2:]], 1
     for name, values in content.point.items():

@@ -107,8 +107,7 @@ class Pairing:
         contents = [st.read(drawings[frame][0]) for frame in span]
         matrix = cameras.layer_to_world(self._ob, layer)
         world = tuple([line @ matrix[:3, :3].T + matrix[:3, 3] for line in stroke_lines.lines(c)] for c in contents)
-        points = contents[0].point["position"]
-        plane = sheets.Plane.of(points[np.isfinite(points).all(1)], [np.eye(4)])
+        plane = sheets.Plane.of((content.point["position"] for content in contents), [np.eye(4)])
         sheet = sheets.Sheet([layer.name], list(span), plane, {0: Choices("LINEAR")}, [Choices("LINEAR")])
         sheet.contents = {0: contents[:1], 1: contents[1:]}
         call = tweening.Call(sheet, sheets.lay_out(self._ob, sheet), [0])

@@ -8,16 +8,17 @@ blended. So the view does not matter.
 from __future__ import annotations
 
 import hashlib
+import itertools
 import json
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from rototoon import Strokes, tween
 
-from ..blender import camera as cameras
-from ..blender import colours
+from ..blender import colours, drawn_plane
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from . import keys as ks
@@ -43,18 +44,19 @@ class Plane:
     """The sheet's origin, in pixels of the plane."""
 
     @classmethod
-    def of(cls, points: np.ndarray, to_sheet: list[np.ndarray]) -> Plane:
-        """The plane of some points. It is rounded, so that it stays the same when a point is moved."""
-        front = np.array([0.0, 1.0, 0.0])
-        _, normal = cameras.plane_of(points, front)
-        normal = np.round(normal * 32)
-        normal = normal / np.linalg.norm(normal) if normal.any() else front
-        aside = np.eye(3)[np.abs(normal).argmin()]
-        across = np.cross(normal, aside)
-        across /= np.linalg.norm(across)
+    def of(cls, drawings: Iterable[np.ndarray], to_sheet: list[np.ndarray]) -> Plane:
+        """The plane of the first drawing, or of more if that is a line. It is rounded, so that it stays the same when a point is
+        moved.
+
+        Drawings are points (N, 3) in the space of the sheet. The first one's size is a thousand pixels.
+        """
+        finite = (points[np.isfinite(points).all(1)] for points in drawings)
+        points = next(finite)
+        normal = np.round(drawn_plane.normal(itertools.chain([points], finite)) * 32)
+        normal = normal / np.linalg.norm(normal) if normal.any() else drawn_plane.FRONT
         extent = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
         scale = 2.0 ** round(math.log2(SIZE / extent)) if 1e-9 < extent < 1e9 else 1.0
-        return cls(np.stack([across, np.cross(normal, across), normal]), scale, to_sheet)
+        return cls(drawn_plane.axes(normal), scale, to_sheet)
 
     def flat(self, points: np.ndarray, layer: int) -> tuple[np.ndarray, np.ndarray]:
         """Pixels (N, 2) of layer points, and their distances (N,) from the plane."""

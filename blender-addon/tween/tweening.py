@@ -6,7 +6,7 @@ those from which it was drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -72,6 +72,16 @@ def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
     return result
 
 
+def _drawn(ob, names: list[str], run: list[int], to_sheet: list[np.ndarray]) -> Iterator[np.ndarray]:
+    """The points of keys in the space of their sheet, drawing by drawing, the first layer's first drawing first."""
+    for name, to in zip(names, to_sheet):
+        drawings = gp.drawings(gp.find_layer(ob, name))
+        for frame in run:
+            handle = drawings[frame][0]
+            points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+            yield points @ to[:3, :3].T + to[:3, 3]
+
+
 def _plan_group(
     ob, names: list[str], wanted: dict[tuple[int, int], Choices], parts: list[captured.Part], result: Plan
 ) -> None:
@@ -86,11 +96,9 @@ def _plan_group(
         choices = [mine.get(k) or _kept(record, run[k], run[k + 1]) or usual for k in range(len(run) - 1)]
         matrices = [hierarchy.in_carrier(gp.find_layer(ob, name)) for name in names]
         to_sheet = [np.linalg.inv(matrices[0]) @ matrix for matrix in matrices]
-        handle = gp.drawings(gp.find_layer(ob, names[0]))[run[0]][0]
-        points = gp.positions(handle, int(gp.offsets(handle)[-1]))
-        plane = sheets.Plane.of(points[np.isfinite(points).all(1)], to_sheet)
+        plane = sheets.Plane.of(_drawn(ob, names, run, to_sheet), to_sheet)
         sheet = sheets.Sheet(names, run, plane, mine, choices)
-        surroundings.prepare(ob, sheet, points)
+        surroundings.prepare(ob, sheet, next(_drawn(ob, names, run, to_sheet)))
         captured.put_on(ob, sheet, parts)
         sheet.read(ob)
         for k in [k for k in mine if not result.again and _is_current(sheet, k, result)]:
