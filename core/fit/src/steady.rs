@@ -11,8 +11,9 @@
 //! than the tolerance can need more guiding points than it has points: each corner needs two. A rung whose guiding points are
 //! the points has reached the noise. It has no corners, so it is not taken for having fewer of them.
 //!
-//! Limits: two tolerances between the same two rungs are not compared with each other. No rung is tried that is as small
-//! as the noise of the points.
+//! Limits: two tolerances between the same two rungs are not compared with each other: of 13 800 random lines four got one
+//! piece more at 1 px than at 0.7 px. The search may end above a rung that is better: of 18 000 random lines one got a corner
+//! more at 4 px than at 2 px. No rung is tried that is as small as the noise of the points.
 
 use super::clean::{self, Cleaned};
 use super::grain::Grain;

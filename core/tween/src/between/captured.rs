@@ -18,9 +18,10 @@
 //! # The part that a stroke follows
 //!
 //! Candidates are parts that are captured on all frames of the span and that contain the stroke, or have it near them,
-//! on both keys. The best one carries the stroke's points most exactly from one key to the other. A stroke follows no
-//! part if the best one misses its points by more than half of their way and by more than drawings may be off a part
-//! ([`NEAR`]).
+//! on both keys. The best one carries the stroke's points most exactly from one key to the other. An arm that has swung out and
+//! come back explains a line on its sleeve no better than the body behind it, so where the stroke lies counts as well, if
+//! little ([`BESIDE`]). A stroke follows no part if the best one misses its points by more than half of their way and by more
+//! than drawings may be off a part ([`NEAR`]).
 //!
 //! # Limits
 //!
@@ -43,6 +44,9 @@ const AROUND: f64 = 3.0;
 const NEAR: f64 = 0.15;
 /// Largest share of its way by which a part may miss a stroke that it does not meet within [`NEAR`].
 const EXPLAINED: f64 = 0.5;
+/// A part counts as missing a stroke by this share of their distance more. It is larger than the noise of tracked contours,
+/// and smaller than what parts that move apart miss.
+const BESIDE: f64 = 0.05;
 /// Size of an open contour or one without area, as a share of its length.
 const OPEN: f64 = 0.3;
 
@@ -82,6 +86,12 @@ impl Captured {
         };
         let off = points.iter().map(outside).sum::<f64>() / points.len().max(1) as f64;
         off <= NEAR * self.size(contour)
+    }
+
+    /// Mean distance of points from the contour on a frame, in pixels.
+    fn beside(&self, points: &[Point], frame: FrameNumber) -> f64 {
+        let contour = self.contours.get(&frame).map_or(&[][..], Vec::as_slice);
+        points.iter().map(|p| polyline::distance(*p, contour, self.closed)).sum::<f64>() / points.len().max(1) as f64
     }
 
     /// Size of a contour, in pixels.
@@ -160,9 +170,11 @@ pub(super) fn followed(parts: &[Captured], track: &Track, key: usize, frames: [F
     let missed = |part: usize| {
         let following = Following::new(parts, part, frames, [a, b])?;
         let carried = following.carried(&parts[part], a, frames[0], frames[1])?;
-        Some((mean_distance(&carried, b), following))
+        let beside = 0.5 * (parts[part].beside(a, frames[0]) + parts[part].beside(b, frames[1]));
+        let miss = mean_distance(&carried, b);
+        Some((miss + BESIDE * beside, miss, following))
     };
-    let (least, following) = (0..parts.len()).filter_map(missed).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let (_, least, following) = (0..parts.len()).filter_map(missed).min_by(|a, b| a.0.total_cmp(&b.0))?;
     let size = parts[following.part].contours.get(&frames[0]).map_or(0.0, |c| parts[following.part].size(c));
     (least <= (EXPLAINED * mean_distance(a, b)).max(NEAR * size)).then_some(following)
 }
@@ -238,6 +250,22 @@ mod tests {
         let still = Captured { closed: false, contours: (0..=10).map(|f| (f, bar(0.1))).collect() };
         let sequence = drawn(bar(angle(0)), bar(angle(10)), &GivenPegs::default(), vec![still, swing(0..=10)]);
         assert!(off(&sequence) < 1e-6, "{}", off(&sequence));
+    }
+
+    #[test]
+    fn a_line_on_a_limb_that_comes_back_follows_the_limb_and_not_the_body_behind_it() {
+        let body: Vec<Point> = [(-60.0, -80.0), (160.0, -80.0), (160.0, 120.0), (-60.0, 120.0)].map(Point::from).into();
+        let still = Captured { closed: true, contours: (0..=10).map(|f| (f, body.clone())).collect() };
+        // The tracked limb is half a pixel off the drawing on the later key. The body is not.
+        let mut limb = swing(0..=10);
+        limb.contours.insert(10, bar(angle(0)).into_iter().map(|p| p + Point::new(0.0, 0.5)).collect());
+        let there = || bar(angle(0));
+        let sequence = drawn(there(), there(), &GivenPegs::default(), vec![still.clone(), limb.clone()]);
+        assert!(off(&sequence) < 1.0, "{}", off(&sequence));
+        // A line that goes with the body is not taken by the limb, though it lies on it on the first key.
+        limb.contours.insert(10, bar(angle(0) + 0.3));
+        let sequence = drawn(there(), there(), &GivenPegs::default(), vec![limb, still]);
+        assert!(mean_distance(&sequence.at(5)[0].stroke.points, &there()) < 1e-9);
     }
 
     #[test]
