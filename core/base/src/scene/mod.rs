@@ -15,6 +15,7 @@
 //! - [`proportions`]: limb lengths of a character, and postures in other proportions
 //! - [`raster`]: a rectangle of pixels
 //! - [`skeleton`]: the key points of a human posture and the limbs between them
+//! - [`spelling`]: how far names are apart
 //! - [`template`]: the key points of any body, and its chains
 
 pub mod clip;
@@ -32,6 +33,7 @@ pub mod progress;
 pub mod proportions;
 pub mod raster;
 pub mod skeleton;
+pub mod spelling;
 pub mod template;
 
 pub use clip::Clip;

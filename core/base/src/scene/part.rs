@@ -3,6 +3,7 @@
 //! A part contains the artist's input (keys, pins, corrected centres, depths, absence, feather, colour) and the results of tracking and snapping.
 //! Points are in pixels of the footage, x right and y down.
 
+use super::spelling::letters_apart;
 use super::{Colour, Falloff, FrameNumber, palette};
 use crate::geometry::Point;
 use std::collections::BTreeMap;
@@ -45,21 +46,35 @@ pub struct Part {
     pub colour: Option<[f64; 3]>,
 }
 
+/// Number of parts of which a message lists all names.
+const LISTED: usize = 12;
+/// Number of nearest names that it lists of more.
+const NEAREST: usize = 5;
+
 /// A name that no part has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no part {name:?}; the document has {known}")]
 pub struct NoSuchPart {
     /// The requested name.
     pub name: String,
-    /// The names of the parts, as a list for people.
+    /// The names of the parts, as a list for people; of many parts those whose names are nearest.
     pub known: String,
 }
 
 impl NoSuchPart {
     /// The error for these parts.
     pub fn of(parts: &[Part], name: &str) -> Self {
-        let names: Vec<String> = parts.iter().map(|part| format!("{:?}", part.name)).collect();
-        let known = if names.is_empty() { "no parts".into() } else { names.join(", ") };
+        let listed = |parts: &[&Part]| parts.iter().map(|p| format!("{:?}", p.name)).collect::<Vec<_>>().join(", ");
+        let mut nearest: Vec<&Part> = parts.iter().collect();
+        let known = match parts.len() {
+            0 => "no parts".to_owned(),
+            1..=LISTED => listed(&nearest),
+            all => {
+                // The order of the document stays among names that are equally near.
+                nearest.sort_by_key(|part| letters_apart(&part.name.to_lowercase(), &name.to_lowercase()));
+                format!("{all} parts, of which the nearest names are {}", listed(&nearest[..NEAREST]))
+            }
+        };
         Self { name: name.into(), known }
     }
 }
@@ -96,6 +111,11 @@ impl Span {
 }
 
 impl Part {
+    /// Whether it has no contour on any frame.
+    pub fn is_bare(&self) -> bool {
+        self.keys.is_empty() && self.tracks.is_empty()
+    }
+
     /// The spans between neighbouring keys, in time order. Empty if there are fewer than two keys.
     pub fn spans(&self) -> Vec<Span> {
         let frames: Vec<_> = self.keys.keys().copied().collect();
@@ -209,6 +229,19 @@ impl Part {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn of_many_parts_the_nearest_names_are_told() {
+        let parts = |count: usize| (0..count).map(|k| Part { name: format!("limb {k}"), ..Part::default() });
+        let told = |parts: Vec<Part>, name: &str| NoSuchPart::of(&parts, name).to_string();
+        assert_eq!(told(parts(2).collect(), "arm"), "no part \"arm\"; the document has \"limb 0\", \"limb 1\"");
+        let mut many: Vec<Part> = parts(30).collect();
+        many.push(Part { name: "left arm".into(), ..Part::default() });
+        let said = told(many, "Left arn");
+        assert!(said.contains("the document has 31 parts, of which the nearest names are \"left arm\", "), "{said}");
+        assert_eq!(said.matches('"').count(), 2 + 2 * NEAREST);
+        assert_eq!(told(Vec::new(), "arm"), "no part \"arm\"; the document has no parts");
+    }
 
     #[test]
     fn an_old_track_does_not_show_where_the_part_is_absent() {
