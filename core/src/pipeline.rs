@@ -9,6 +9,7 @@ mod check;
 mod doubts;
 mod error;
 mod fill;
+mod gaps;
 pub mod memory;
 mod paint;
 mod picture;
@@ -104,6 +105,7 @@ pub fn track(
 ) -> Result<Tracking, PipelineError> {
     let frames = frames(document, folder)?;
     memory::to_follow(&document.scene.footage)?;
+    gaps::none(&frames, gaps::between_keys(&document.scene))?;
     let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &frames, progress)?;
     store(&mut document.scene, &tracking);
     Ok(tracking)
@@ -123,6 +125,7 @@ pub fn held(
     let footage = &document.scene.footage;
     let frames = Sequence::keeping(footage, folder, 0)?;
     memory::to_follow(footage)?;
+    gaps::none(&frames, footage.first..=footage.last)?;
     Ok(crate::track::drawings(&frames, footage.first..=footage.last, progress)?)
 }
 
@@ -173,6 +176,7 @@ pub fn snap(
 ) -> Result<(), PipelineError> {
     let frames = frames(document, folder)?;
     memory::to_follow(&document.scene.footage)?;
+    gaps::none(&frames, gaps::with_contours(&document.scene))?;
     let curves = snap_scene(&document.scene, &frames, options, progress)?;
     for (part, curves) in document.scene.parts.iter_mut().zip(curves) {
         part.curves = curves;

@@ -7,7 +7,7 @@
 //!
 //! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
-use super::decode::{Described, described, raster, stored};
+use super::decode::{Described, described, probe, raster, stored};
 use super::error::DecodeError;
 use super::store;
 use super::stored::Stored;
@@ -94,6 +94,21 @@ impl Sequence {
     pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
         self.inside(frame)?;
         self.read(frame, Stored::layer)
+    }
+
+    /// Whether a frame has a picture of the footage's size, as far as the head of its file says. Nothing is decoded.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Sequence::layer`].
+    pub fn probe(&self, frame: FrameNumber) -> Result<(), FrameError> {
+        self.inside(frame)?;
+        let path = self.path(frame);
+        let size = (self.footage.width, self.footage.height);
+        let found = probe(&path).and_then(|(width, height)| {
+            if (width, height) == size { Ok(()) } else { Err(DecodeError::WrongSize { width, height }) }
+        });
+        found.map_err(|error| self.named(frame, path, error))
     }
 
     /// What a frame's file says of its picture ([`described`]).
@@ -247,6 +262,9 @@ mod tests {
         std::fs::write(at("f003.png"), "text").unwrap();
         ImageBuffer::from_pixel(9, 3, Rgb([0u8; 3])).save(at("f004.png")).unwrap();
         let sequence = Sequence::new(&footage, folder.path()).unwrap();
+        for frame in 1..=7 {
+            assert_eq!(sequence.probe(frame).err(), sequence.picture(frame).err(), "{frame}");
+        }
         assert_eq!(sequence.picture(7), Err(FrameError::Outside { frame: 7, first: 1, last: 6 }));
         assert_eq!(sequence.picture(2), Err(FrameError::Missing { frame: 2, path: at("f002.png") }));
         let unreadable = sequence.picture(3).unwrap_err();

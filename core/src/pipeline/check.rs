@@ -1,7 +1,7 @@
 //! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
-use super::PipelineError;
 use super::tween::{peg_of, spacing};
+use super::{PipelineError, gaps};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::{Document, Problems};
@@ -34,34 +34,8 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         done += batch.len();
         progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
     }
-    frames_problems(unreadable, &mut problems);
+    gaps::lines(&unreadable).into_iter().for_each(|line| problems.error("footage", line));
     Ok(problems)
-}
-
-/// One error for each run of neighbouring frames with the same kind of error: that of the first frame, and how many
-/// follow.
-fn frames_problems(unreadable: Vec<(FrameNumber, FrameError)>, problems: &mut Problems) {
-    let same = |a: &(FrameNumber, FrameError), b: &(FrameNumber, FrameError)| b.0 == a.0 + 1 && one_cause(&a.1, &b.1);
-    for run in unreadable.chunk_by(same) {
-        let (Some((_, error)), Some((last, _))) = (run.first(), run.last()) else { continue };
-        match run.len() - 1 {
-            0 => problems.error("footage", error.to_string()),
-            1 => problems.error("footage", format!("{error} (the same on frame {last})")),
-            more => problems.error("footage", format!("{error} (the same on the next {more} frames, up to {last})")),
-        }
-    }
-}
-
-fn one_cause(a: &FrameError, b: &FrameError) -> bool {
-    match (a, b) {
-        (FrameError::Missing { .. }, FrameError::Missing { .. }) => true,
-        (FrameError::Unreadable { reason, .. }, FrameError::Unreadable { reason: other, .. }) => reason == other,
-        (
-            FrameError::WrongSize { found_width: width, found_height: height, .. },
-            FrameError::WrongSize { found_width, found_height, .. },
-        ) => (width, height) == (found_width, found_height),
-        _ => false,
-    }
 }
 
 /// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.

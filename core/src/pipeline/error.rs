@@ -23,6 +23,14 @@ pub enum PipelineError {
     /// A frame could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// Frames have no picture.
+    #[error("{}", super::gaps::told(gaps, *drawn))]
+    Gaps {
+        /// All of them, in their order.
+        gaps: Vec<(FrameNumber, FrameError)>,
+        /// How many frames were drawn nevertheless, and how many were asked for; `None` if no work was done.
+        drawn: Option<[usize; 2]>,
+    },
     /// The caller cancelled the work.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -8,7 +8,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::{PipelineError, frames, frames_of};
+use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
 use crate::fill::{Click, Page, Paint, Source, carry, fills};
 use crate::geometry::Point;
@@ -128,7 +128,9 @@ pub fn fill(
     let earlier = document.filled().map_err(|error| field(&error))?;
     let sequence = frames(document, folder)?;
     let first = clicks[0].1.frame;
-    let all = (first.min(*range.start())..=first.max(*range.end())).count();
+    let looked_at = first.min(*range.start())..=first.max(*range.end());
+    gaps::none(&sequence, looked_at.clone())?;
+    let all = looked_at.count();
     let mut painting = Painting {
         frames: &sequence,
         options,

@@ -24,12 +24,13 @@ struct Rendering {
 }
 
 /// Renders frames of a document in `folder` and returns the paths of the files. Each file is written completely or not
-/// at all. It runs on the caller's rayon pool.
+/// at all. Where the footage has no picture for a frame that shows it, all other frames are rendered before the error. It runs on
+/// the caller's rayon pool.
 ///
 /// # Errors
 ///
 /// [`PipelineError::Option`] if parts or frames do not fit the document; [`PipelineError::Request`] if the output does not fit
-/// the job; errors of reading, encoding and writing; or
+/// the job; [`PipelineError::Gaps`] if pictures of the footage are missing; errors of encoding and writing; or
 /// [`PipelineError::Cancelled`].
 pub fn render(
     document: &Document,
@@ -39,7 +40,7 @@ pub fn render(
 ) -> Result<Vec<PathBuf>, PipelineError> {
     let sequence = frames(document, folder)?;
     let plan = plan(document, &sequence, job)?;
-    let mut done = 0;
+    let (mut done, mut gaps) = (0, Vec::new());
     progress.report("Rendering", 0.0)?;
     let footage = &plan.size;
     let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
@@ -49,9 +50,18 @@ pub fn render(
             .par_iter()
             .map(|(frame, path)| Ok(write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?))
             .collect();
-        results.into_iter().collect::<Result<(), _>>()?;
+        for ((frame, _), result) in batch.iter().zip(results) {
+            match result {
+                Err(PipelineError::Frame(error)) => gaps.push((*frame, error)),
+                other => other?,
+            }
+        }
         done += batch.len();
         progress.report("Rendering", done as f64 / plan.frames.len() as f64)?;
+    }
+    if !gaps.is_empty() {
+        let drawn = Some([plan.frames.len() - gaps.len(), plan.frames.len()]);
+        return Err(PipelineError::Gaps { gaps, drawn });
     }
     Ok(plan.frames.into_iter().map(|(_, path)| path).collect())
 }

@@ -2,7 +2,7 @@
 //! time. Frames on which a part or a stroke is lost have a red border, those on which one or a region is doubtful an amber one.
 
 use super::sheet_drawn::Contents;
-use super::{PipelineError, frames, memory};
+use super::{PipelineError, frames, gaps, memory};
 use crate::image::resize::resize;
 use crate::project::Document;
 use crate::render::{OverlayOptions, overlay};
@@ -45,6 +45,7 @@ pub fn sheet(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     let mut verdicts = verdicts(&contents.scene);
     contents.doubts().for_each(|(frame, verdict)| worse(&mut verdicts, frame, verdict));
     let chosen = chosen(&document.scene.footage, &verdicts);
+    gaps::none(&sequence, chosen.iter().copied())?;
     let done = AtomicUsize::new(0);
     let cells = chosen.par_iter().with_max_len(1).map(|&frame| {
         let picture = sequence.picture(frame)?;

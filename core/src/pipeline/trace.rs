@@ -10,7 +10,7 @@ pub use kept::TraceMemory;
 pub use on_keys::trace_drawings;
 
 use super::strokes::{area, behind};
-use super::{PipelineError, frames, frames_of};
+use super::{PipelineError, frames, frames_of, gaps};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
@@ -59,6 +59,7 @@ pub fn trace(
     let drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
     let earlier = document.traced().map_err(|error| wrong(&error))?;
     let sequence = frames(document, folder)?;
+    gaps::none(&sequence, range.clone())?;
     let beside = beside(&drawn, &earlier, &range);
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();

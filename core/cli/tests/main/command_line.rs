@@ -96,7 +96,9 @@ fn missing_and_unreadable_frames_are_named() {
         assert!(line.starts_with(&format!("{}cannot read {:?}: ", start(frame), cartoon.frame(frame))), "{line}");
     }
     let error = bad(&["track", text(&project), "-o", text(&out)], 1);
-    assert!(error.starts_with("error: frame ") && error.lines().count() == 1, "{error}");
+    // The file of frame 5 is damaged behind its head, so it would be found later.
+    let named: Vec<_> = error.lines().filter_map(|line| line.strip_prefix("error: frame ")?.get(..2)).collect();
+    assert_eq!(named, ["2:", "3:", "4:"], "{error}");
     assert!(!out.exists());
     // Snapping needs only the frames of the keys, and these exist.
     good(&["snap", text(&project), "-o", text(&out)]);

@@ -12,6 +12,7 @@ mod exchange;
 mod fill;
 mod fit;
 mod inputs;
+mod plates;
 mod season;
 mod style;
 mod style_reshape;

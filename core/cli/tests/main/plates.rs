@@ -1,0 +1,60 @@
+//! Tests of footage as it comes: plates that begin on another frame, gaps in sequences, documents behind links, and the forms of the
+//! pictures that are made of them.
+
+use crate::cartoon::{Cartoon, bad, good, read, square, text};
+use serde_json::json;
+use std::fs;
+
+/// A document of two parts that are tracked on all frames.
+fn tracked(cartoon: &Cartoon) -> std::path::PathBuf {
+    let on = |last: i32| {
+        let frames = (0..=last).map(|frame| (frame.to_string(), square(8.0 + 3.0 * f64::from(frame))));
+        serde_json::Value::Object(frames.collect())
+    };
+    let part = |name: &str, depth: i32, last: i32| json!({"name": name, "depth": depth, "closed": true, "keys": on(last), "tracks": on(last)});
+    cartoon.document("tracked.json", json!([part("near", 2, 6), part("far", 1, 3)]))
+}
+
+#[test]
+fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
+    let cartoon = Cartoon::new();
+    let (keyed, document) = (cartoon.keyed(), tracked(&cartoon));
+    fs::remove_file(cartoon.frame(1)).unwrap();
+    fs::remove_file(cartoon.frame(2)).unwrap();
+    fs::write(cartoon.frame(4), "no picture").unwrap();
+    let out = cartoon.path("out.json");
+    let sheet = cartoon.path("sheet.png");
+    for words in [
+        ["track", text(&keyed), "-o", text(&out)],
+        ["snap", text(&document), "-o", text(&out)],
+        ["trace", text(&document), "-o", text(&out)],
+        ["sheet", text(&document), "-o", text(&sheet)],
+    ] {
+        let said = bad(&words, 1);
+        let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("error: ")).collect();
+        assert_eq!(lines.len(), 2, "{words:?}: {said}");
+        assert!(lines[0].contains("frame 1: no file") && lines[0].ends_with("(the same on frame 2)"), "{said}");
+        assert!(lines[1].contains("frame 4: cannot read") && lines[1].contains("not a PNG"), "{said}");
+    }
+    assert!(!out.exists() && !sheet.exists());
+}
+
+#[test]
+fn pictures_are_drawn_around_a_gap_and_the_missing_ones_are_named() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    fs::remove_file(cartoon.frame(2)).unwrap();
+    let whole = fs::read(cartoon.frame(5)).unwrap();
+    fs::write(cartoon.frame(5), &whole[..whole.len() / 2]).unwrap();
+    for (name, what) in [("o.%d.png", "overlay"), ("c.%d.exr", "cutout")] {
+        let to = cartoon.path(name);
+        let said = bad(&["render", text(&document), "-o", text(&to), "--what", what], 1);
+        assert!(said.contains("frame 2: no file") && said.contains("frame 5: cannot read"), "{said}");
+        assert!(said.contains("5 of 7 frames were drawn; those named are missing"), "{said}");
+        let made: Vec<_> = cartoon.names().into_iter().filter(|own| own.starts_with(&name[..2])).collect();
+        assert_eq!(made, [0, 1, 3, 4, 6].map(|frame| name.replace("%d", &frame.to_string())));
+    }
+    // A matte is drawn from contours alone.
+    let to = cartoon.path("m.%d.exr");
+    good(&["render", text(&document), "-o", text(&to), "--what", "matte"]);
+}
