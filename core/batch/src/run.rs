@@ -8,6 +8,7 @@ use crate::record::Record;
 use crate::report::{Report, rounded};
 use crate::shot::{self, ShotError, StepEnd, Worker};
 use crate::summary::{Outcome, read_record};
+use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -182,7 +183,7 @@ fn need(shot: &Shot, folder: &Path, threads: usize) -> Need {
     // A document that cannot be read is the shot's failure, and told there.
     let Ok(document) = Document::load(&shot.project) else { return Need { steps: before, frames: 0 } };
     let scene = &document.scene;
-    let frames = kept(&scene.footage, shot.project.parent().unwrap_or(Path::new("")));
+    let frames = kept(&scene.footage, &folder_of(&shot.project, &scene.footage));
     // The steps that are done may have been the small ones.
     let known = before > 0 && record.ended_bytes == 0 && record.steps.len() >= shot.steps.len();
     Need { steps: if known { before } else { before.max(estimate(scene, threads)) }, frames }

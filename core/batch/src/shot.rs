@@ -8,6 +8,7 @@ use crate::record::{Done, Record};
 use crate::step::Step;
 use crate::{digest, page};
 use rototoon::memory::Bytes;
+use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
 use rototoon::scene::Footage;
 use std::collections::BTreeMap;
@@ -143,7 +144,7 @@ impl Work<'_> {
         let mut document = absolute(&self.shot.project);
         let footage = self.footage(&document)?;
         let frames = if self.shot.steps.iter().any(Step::reads_footage) {
-            digest::of_footage(&footage, document.parent().unwrap_or(Path::new("")))
+            digest::of_footage(&footage, &folder_of(&document, &footage))
         } else {
             String::new()
         };
@@ -181,8 +182,8 @@ impl Work<'_> {
         }
         let document = Document::load(path).map_err(|error| ShotError::Step(error.lines().join("; ")))?;
         let findings = Findings::of(&document.scene);
-        let folder = path.parent().unwrap_or(Path::new(""));
-        page::sheet::write(&document, folder, &findings, &self.folder, self.worker.threads)?;
+        let folder = folder_of(path, &document.scene.footage);
+        page::sheet::write(&document, &folder, &findings, &self.folder, self.worker.threads)?;
         (self.record.findings, self.record.seen) = (findings, seen);
         Ok(())
     }

@@ -8,6 +8,7 @@ use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
+use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::{Document, Inputs};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
@@ -69,7 +70,8 @@ impl Session {
     /// Creates a session from a project file.
     pub fn open(path: &Path) -> Result<Self, Failure> {
         let document = Document::load(path).map_err(Failure::error)?;
-        Ok(Self::of(document, path.parent().unwrap_or(Path::new(""))))
+        let folder = folder_of(path, &document.scene.footage);
+        Ok(Self::of(document, &folder))
     }
 
     fn of(document: Document, folder: &Path) -> Self {
@@ -90,7 +92,7 @@ impl Session {
         inputs.check(path).map_err(Failure::error)?;
         let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
-        pipeline::relocate(&mut document, &self.folder, target.parent().unwrap_or(&self.folder));
+        pipeline::relocate(&mut document, &self.folder, &folder_for(&target, &self.folder));
         document.save(path).map_err(Failure::error)
     }
 

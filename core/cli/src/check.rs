@@ -27,8 +27,8 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let path = arguments::path(given, "project");
     let document = Document::load(path)?;
-    let problems =
-        progress::run(arguments::threads(given), |bar| Ok(pipeline::check(&document, project::folder(path), bar)?))?;
+    let home = project::home(&document, path);
+    let problems = progress::run(arguments::threads(given), |bar| Ok(pipeline::check(&document, &home, bar)?))?;
     if let Some(outside) = outside(&document.scene.footage.pattern) {
         line("note", &format!("{}: footage.pattern: {outside}", path.display()));
     }
@@ -45,8 +45,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Reported);
     }
     if given.get_flag("drawings") {
-        let drawings =
-            progress::run(arguments::threads(given), |bar| Ok(pipeline::held(&document, project::folder(path), bar)?))?;
+        let drawings = progress::run(arguments::threads(given), |bar| Ok(pipeline::held(&document, &home, bar)?))?;
         line("note", &format!("{}: {}", path.display(), listed(&drawings)));
     }
     line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));

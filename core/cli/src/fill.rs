@@ -36,6 +36,7 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = project::load_drawn(from)?;
+    let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
@@ -43,8 +44,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);
     let options = FillOptions { lines: Options { style: Style::Auto, sensitivity }, confidence };
     let (document, report) = progress::run(arguments::threads(given), |bar| {
-        let report = pipeline::fill(&mut document, project::folder(from), frames, &options, bar)
-            .map_err(|error| Failure::of(error, from))?;
+        let report =
+            pipeline::fill(&mut document, &home, frames, &options, bar).map_err(|error| Failure::of(error, from))?;
         Ok((document, report))
     })?;
     project::save(document, from, to)?;

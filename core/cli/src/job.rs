@@ -82,7 +82,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 fn frames(manifest: &Manifest, inputs: Inputs) -> Inputs {
     let projects: BTreeSet<&Path> = manifest.shots.iter().map(|shot| shot.project.as_path()).collect();
     projects.into_iter().fold(inputs, |inputs, project| match Document::load(project) {
-        Ok(document) => inputs.footage(&document.scene.footage, project::folder(project)),
+        Ok(document) => inputs.footage(&document.scene.footage, &project::home(&document, project)),
         Err(_) => inputs,
     })
 }

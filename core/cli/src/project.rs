@@ -2,8 +2,9 @@
 
 use crate::failure::{Failure, line};
 use rototoon::pipeline;
+use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::{Document, Inputs};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads a document and prints its warnings.
 pub fn load(path: &Path) -> Result<Document, Failure> {
@@ -31,19 +32,25 @@ fn warned(path: &Path, needs_part: impl FnOnce(&Document) -> bool) -> Result<Doc
     Ok(document)
 }
 
-/// The folder of a document, to which its footage is relative.
+/// The folder of a file.
 pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
+}
+
+/// The folder that the footage of a document is relative to, which was read from `path`.
+pub fn home(document: &Document, path: &Path) -> PathBuf {
+    folder_of(path, &document.scene.footage)
 }
 
 /// The footage of a document that was read from `from`. No output may be one of its frames; the document itself may be
 /// written over by a later state of it.
 pub fn inputs(document: &Document, from: &Path) -> Inputs {
-    Inputs::default().footage(&document.scene.footage, folder(from))
+    Inputs::default().footage(&document.scene.footage, &home(document, from))
 }
 
 /// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files.
 pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failure> {
-    pipeline::relocate(&mut document, folder(from), folder(to));
+    let home = home(&document, from);
+    pipeline::relocate(&mut document, &home, &folder_for(to, &home));
     Ok(document.save(to)?)
 }

@@ -84,9 +84,10 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let output = job.output.as_str();
     let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
+    let home = project::home(&document, from);
     check_writable(&probed(output))?;
     progress::run(arguments::threads(given), |bar| {
-        pipeline::render(&document, project::folder(from), &job, bar).map_err(|error| Failure::of(error, from))
+        pipeline::render(&document, &home, &job, bar).map_err(|error| Failure::of(error, from))
     })?;
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
     lacking.iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));

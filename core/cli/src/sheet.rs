@@ -28,10 +28,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use(format!("{}: expected a name that ends in .png", to.display())));
     }
     let document = project::load_either(from)?;
+    let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let sheet = progress::run(arguments::threads(given), |bar| {
-        pipeline::sheet(&document, project::folder(from), bar).map_err(|error| Failure::of(error, from))
+        pipeline::sheet(&document, &home, bar).map_err(|error| Failure::of(error, from))
     })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
     Ok(write_whole(to, &bytes)?)

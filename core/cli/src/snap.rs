@@ -23,10 +23,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let options = options(given)?;
     let mut document = project::load(from)?;
+    let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::snap(&mut document, project::folder(from), &options, bar)?;
+        pipeline::snap(&mut document, &home, &options, bar)?;
         Ok(document)
     })?;
     project::save(document, from, to)

@@ -49,6 +49,7 @@ pub fn command() -> Command {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = project::load_drawn(from)?;
+    let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let style = match arguments::choice(given, "line_style") {
@@ -63,8 +64,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let document = progress::run(arguments::threads(given), |bar| {
-        pipeline::trace(&mut document, project::folder(from), frames, &options, None, bar)
-            .map_err(|error| Failure::of(error, from))?;
+        pipeline::trace(&mut document, &home, frames, &options, None, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
@@ -81,8 +81,9 @@ fn on_keys(
     options: &Options,
     threads: usize,
 ) -> Result<(), Failure> {
+    let home = project::home(&document, from);
     let (document, empty) = progress::run(threads, |bar| {
-        let empty = pipeline::trace_drawings(&mut document, project::folder(from), keys, options, bar)
+        let empty = pipeline::trace_drawings(&mut document, &home, keys, options, bar)
             .map_err(|error| Failure::of(error, from))?;
         Ok((document, empty))
     })?;

@@ -37,6 +37,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let id = arguments::choice(given, "preset");
     let preset = Preset::from_id(id).ok_or_else(|| Failure::Use(format!("no preset {id:?}")))?;
     let mut document = project::load(from)?;
+    let home = project::home(&document, from);
     let written = given.get_one::<PathBuf>("report");
     for path in [Some(to), written.map(PathBuf::as_path)].into_iter().flatten() {
         project::inputs(&document, from).check(path)?;
@@ -47,7 +48,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let document = progress::run(arguments::threads(given), |bar| {
-        let tracking = pipeline::track(&mut document, project::folder(from), &options, bar)?;
+        let tracking = pipeline::track(&mut document, &home, &options, bar)?;
         say_ends(&document.scene, &tracking);
         Ok(document)
     })?;

@@ -66,6 +66,7 @@ fn of_movement() -> [Arg; 4] {
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = rototoon::project::Document::load(from)?;
+    let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let footage = &document.scene.footage;
@@ -83,7 +84,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         if !given.get_flag("suggest") {
             return Ok((document, notes, None));
         }
-        let pictures = pipeline::frames(&document, project::folder(from))?;
+        let pictures = pipeline::frames(&document, &home)?;
         let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), bar)?;
         let nothing = || "no breakdown: nothing lies between the keys".to_owned();
         Ok((document, notes, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))

@@ -63,6 +63,7 @@ pub mod load;
 mod looks;
 pub mod output;
 pub mod path;
+pub mod place;
 mod plain_clips;
 pub mod problem;
 pub mod save;

@@ -94,7 +94,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let over = match given.get_one::<PathBuf>("over") {
         Some(path) => {
             let mut other = Document::load(path)?;
-            pipeline::relocate(&mut other, project::folder(path), project::folder(from));
+            let (home, own) = (project::home(&other, path), project::home(&document, from));
+            pipeline::relocate(&mut other, &home, &own);
             Some(other.scene.footage)
         }
         None => None,

@@ -58,3 +58,29 @@ fn pictures_are_drawn_around_a_gap_and_the_missing_ones_are_named() {
     let to = cartoon.path("m.%d.exr");
     good(&["render", text(&document), "-o", text(&to), "--what", "matte"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_document_behind_a_link_has_its_frames() {
+    use std::os::unix::fs::symlink;
+    let cartoon = Cartoon::new();
+    let document = cartoon.keyed();
+    let desk = tempfile::tempdir().unwrap();
+    let (link, out) = (desk.path().join("project.json"), desk.path().join("out.json"));
+    symlink(&document, &link).unwrap();
+    good(&["check", text(&link)]);
+    good(&["track", text(&link), "-o", text(&out)]);
+    good(&["check", text(&out)]);
+    good(&["track", text(&link), "-o", text(&link)]);
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    let pattern = |path: &std::path::Path| read(path)["footage"]["pattern"].clone();
+    assert_eq!(pattern(&document), json!("frames/f_%03d.png"), "written through the link, it names the same frames");
+    good(&["check", text(&document)]);
+    // Frames beside the link come first: here one is missing.
+    fs::create_dir(desk.path().join("frames")).unwrap();
+    for frame in 0..6 {
+        let name = format!("frames/f_{frame:03}.png");
+        fs::copy(cartoon.path(&name), desk.path().join(&name)).unwrap();
+    }
+    assert!(bad(&["check", text(&link)], 1).contains("frame 6: no file"));
+}
