@@ -3,7 +3,8 @@
 //! Each part is a Bézier shape in the root layer; the nearest comes first, as in the node's list. A point consists of
 //! three pairs of numbers: the handle before it, its position, and the handle after it. Handles are relative to their
 //! point. They are zero, so the sides are straight like those of the part. If a part has several frames, each number
-//! that changes is a curve of keys `{{frame value} …}`. Coordinates are pixels with x right, y up and the origin at the
+//! that changes is a curve of keys `{{frame value} …}`. Where the number stays the same for several frames, two keys at each end hold
+//! it: the format's keys have no kind of way to the next one here, and with two of them no smooth way swings between. Coordinates are pixels with x right, y up and the origin at the
 //! lower left. The lifetime of a shape is the range of its frames. Where a part is not there between its frames, the opacity
 //! of its shape (`opc`) is 0. Of the falloff of a soft border it has the rate (`ff`). The numbers of its curves (`ft`) are not
 //! public.
@@ -96,10 +97,17 @@ fn channel(values: impl Iterator<Item = (FrameNumber, f64)>) -> String {
     match keys.first() {
         Some((_, value)) if keys.iter().all(|(_, other)| other == value) => value.clone(),
         _ => {
-            let keys: Vec<_> = keys.iter().map(|(frame, value)| format!("{{{frame} {value}}}")).collect();
+            let keys = held(&keys).map(|(frame, value)| format!("{{{frame} {value}}}")).collect::<Vec<_>>();
             format!("{{{}}}", keys.join(" "))
         }
     }
+}
+
+/// Keys without those that have two of the same value on both sides. The way between those that are left is flat, also where its slope on
+/// a key comes from the keys beside it.
+fn held(keys: &[(String, String)]) -> impl Iterator<Item = &(String, String)> {
+    let same = |k: usize| keys[k - 2..=k + 2].iter().all(|(_, value)| *value == keys[k].1);
+    (0..keys.len()).filter(move |&k| k < 2 || k + 2 >= keys.len() || !same(k)).map(|k| &keys[k])
 }
 
 /// The bits of a 32-bit float in hexadecimal digits.
@@ -169,6 +177,21 @@ mod tests {
         let between = scene.parts[0].keys[&1].clone();
         scene.parts[0].tracks.insert(2, between);
         assert!(!nuke(&scene, 1.0).contains("opc"));
+    }
+
+    #[test]
+    fn a_number_that_is_held_has_two_keys_at_each_end() {
+        let frames = |values: &[i32]| {
+            let text = channel((0..).zip(values.iter().map(|&value| f64::from(value))));
+            let keys = text.trim_matches(['{', '}']).split("} {").map(|key| key.split(' ').next().unwrap().to_owned());
+            keys.collect::<Vec<_>>()
+        };
+        let of = |frames: &[i32]| frames.iter().map(|&frame| number(frame.into())).collect::<Vec<_>>();
+        assert_eq!(
+            frames(&[1, 1, 1, 1, 1, 1, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4]),
+            of(&[0, 1, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 15])
+        );
+        assert_eq!(frames(&[1, 1, 1, 2]), of(&[0, 1, 2, 3]));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Shapes for Silhouette (`.fxs`).
 //!
 //! The file is an XML document. One layer contains a Bézier shape for each part, nearest first. A shape has a key of
-//! its path on every frame on which the part has a contour. Where the part is not there, the opacity of its shape is 0. Both handles of a point are at the point, so the sides are
+//! its path on every frame on which the part has a contour, but for those on which it is held: paths go evenly from key to key. Where the part is not there, the opacity of its shape is 0. Both handles of a point are at the point, so the sides are
 //! straight like those of the part.
 //!
 //! Coordinates are independent of the resolution: the origin is the middle of the picture, x points right, y down, and
@@ -12,7 +12,7 @@
 //! Silhouette reads that.
 
 use super::names::written;
-use super::outlines::Outlines;
+use super::outlines::{Outlines, turning};
 use super::presence::presence;
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
@@ -66,7 +66,7 @@ fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing:
     }
     *out += "      <Property id=\"path\">\n";
     let closed = if part.closed { "True" } else { "False" };
-    for (frame, points) in keys {
+    for (frame, points) in turning(&keys) {
         let frame = i64::from(frame) - i64::from(scene.footage.first);
         let _ =
             writeln!(out, "       <Key frame=\"{frame}\" interp=\"linear\"><Path closed=\"{closed}\" type=\"Bezier\">");
@@ -134,5 +134,17 @@ mod tests {
         scene.footage.last = 16;
         let text = silhouette(&scene, 1.0);
         assert!(text.contains("<Property constant=\"True\" id=\"opacity\"><Value>100</Value></Property>"), "{text}");
+    }
+
+    #[test]
+    fn a_held_contour_has_keys_at_its_ends() {
+        let at = |x: f64| vec![Point::new(x, 2.0), Point::new(8.0, 2.0), Point::new(8.0, 10.0)];
+        let keys = (10..20).map(|frame| (frame, at(if frame < 18 { 0.5 } else { 2.0 }))).collect();
+        let part = Part { name: "arm".into(), closed: true, keys, ..Part::default() };
+        let footage = Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30 };
+        let text = silhouette(&Scene { footage, parts: vec![part] }, 1.0);
+        let frames: Vec<&str> =
+            text.split("<Key frame=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+        assert_eq!(frames, ["0", "7", "8", "9"]);
     }
 }
