@@ -1,5 +1,7 @@
 //! The reasons why a file gives no picture.
 
+use image::error::{ImageFormatHint, UnsupportedErrorKind};
+use image::{ImageError, ImageFormat};
 use std::io;
 
 /// The reason why a file gives no picture.
@@ -30,8 +32,69 @@ impl From<io::Error> for DecodeError {
     }
 }
 
-impl From<image::ImageError> for DecodeError {
-    fn from(error: image::ImageError) -> Self {
-        Self::Unreadable(error.to_string())
+impl From<ImageError> for DecodeError {
+    fn from(error: ImageError) -> Self {
+        Self::Unreadable(unsupported_tiff(&error).unwrap_or_else(|| error.to_string()))
+    }
+}
+
+/// The message for a form of TIFF that is not read: what was found, and what to do. `None` for any other error.
+fn unsupported_tiff(error: &ImageError) -> Option<String> {
+    let ImageError::Unsupported(unsupported) = error else { return None };
+    let UnsupportedErrorKind::GenericFeature(feature) = unsupported.kind() else { return None };
+    let is_tiff = unsupported.format_hint() == ImageFormatHint::Exact(ImageFormat::Tiff);
+    let compression = feature.strip_prefix("compression method ").and_then(|rest| rest.split(' ').next());
+    let (found, expected) = match compression {
+        Some(name) => (format!("the compression {name}"), "none, LZW, Deflate or PackBits"),
+        None if feature.contains("RGBPalette") => ("a palette".to_owned(), "grey, colour or CMYK"),
+        None => return None,
+    };
+    is_tiff.then(|| format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG"))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::decode::probe;
+
+    /// A TIFF file of 2x2 grey pixels with this photometric interpretation and compression.
+    fn tiff(photometric: u16, compression: u16) -> Vec<u8> {
+        let mut entries: Vec<(u16, u16, u32, u32)> =
+            vec![(256, 3, 1, 2), (257, 3, 1, 2), (258, 3, 1, 8), (259, 3, 1, compression.into())];
+        entries.extend([
+            (262, 3, 1, photometric.into()),
+            (273, 4, 1, 8),
+            (277, 3, 1, 1),
+            (278, 3, 1, 2),
+            (279, 4, 1, 4),
+        ]);
+        let palette = 768;
+        entries.extend((photometric == 3).then_some((320, 3, palette, 12)));
+        let directory = 12 + 2 * palette;
+        let mut file = [b"II*\0", &directory.to_le_bytes()[..], &[0, 1, 2, 3]].concat();
+        file.resize(directory as usize, 0);
+        file.extend((entries.len() as u16).to_le_bytes());
+        for (tag, kind, count, value) in entries {
+            file.extend(
+                [&tag.to_le_bytes()[..], &kind.to_le_bytes(), &count.to_le_bytes(), &value.to_le_bytes()].concat(),
+            );
+        }
+        file.extend([0; 4]);
+        file
+    }
+
+    #[test]
+    fn forms_of_tiff_that_are_not_read_say_what_to_do() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tif");
+        let told = |photometric, compression| {
+            std::fs::write(&path, tiff(photometric, compression)).unwrap();
+            probe(&path).and_then(|_| crate::decode::decode(&path, None)).map(drop).map_err(|error| error.to_string())
+        };
+        assert_eq!(told(1, 1), Ok(()));
+        let said = |found: &str, expected: &str| {
+            Err(format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG"))
+        };
+        assert_eq!(told(3, 1), said("a palette", "grey, colour or CMYK"));
+        assert_eq!(told(1, 50000), said("the compression ZSTD", "none, LZW, Deflate or PackBits"));
     }
 }
