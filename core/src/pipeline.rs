@@ -8,6 +8,7 @@ mod breakdown;
 mod check;
 mod doubts;
 mod error;
+mod excerpt;
 mod fill;
 mod gaps;
 pub mod memory;
@@ -31,6 +32,7 @@ pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
+pub use excerpt::{Excerpt, excerpt};
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
 pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
@@ -48,7 +50,7 @@ pub use untracked::untracked;
 use crate::export::{self, SvgOptions, svg_with_drawn};
 use crate::fit;
 use crate::geometry::Point;
-use crate::import::{self, ImportError};
+use crate::import::{self, ImportError, Shapes};
 use crate::pictures::Sequence;
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
@@ -249,8 +251,10 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
     let names: Vec<String> = other.map(|part| format!("{:?}", part.name)).collect();
     let falloff = (!names.is_empty())
         .then(|| format!("the file has no such falloff, or only its rate, as that of {}", names.join(", ")));
-    let renamed = export::renamed(&document.scene, extension);
-    let renamed: Vec<String> = renamed.into_iter().map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
+    // Only what is written can have another name there.
+    let bare = |name: &str| document.scene.part_index(name).is_ok_and(|k| document.scene.parts[k].is_bare());
+    let renamed = export::renamed(&document.scene, extension).into_iter().filter(|(own, _)| !bare(own));
+    let renamed: Vec<String> = renamed.map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
     let names = (!renamed.is_empty()).then(|| format!("the file cannot have some names: {}", renamed.join(", ")));
     let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
     let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(varying).collect();
@@ -286,15 +290,48 @@ pub enum ShapeFormat {
 ///
 /// An [`ImportError`]; the document is then unchanged.
 pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Result<Vec<String>, ImportError> {
-    let footage = &document.scene.footage;
-    let found = match format {
-        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still)?,
-        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage)?,
-        ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still)?,
-        ShapeFormat::Natron { still } => import::natron::natron(text, footage, still)?,
-    };
+    let found = shapes(&document.scene.footage, text, format)?;
     import::into_scene(&mut document.scene, found.shapes);
     Ok(found.warnings)
+}
+
+/// As [`import`], for a file whose frames are those of the document plus `offset`. `still` is a frame of the document.
+///
+/// # Errors
+///
+/// [`PipelineError::Option`] for an offset that is too large, and [`PipelineError::Import`]; the document is then unchanged.
+pub fn import_shifted(
+    document: &mut Document,
+    text: &str,
+    format: ShapeFormat,
+    offset: FrameNumber,
+) -> Result<Vec<String>, PipelineError> {
+    let footage = excerpt::shifted(&document.scene.footage, offset)?;
+    let moved = |still: FrameNumber| still.saturating_add(offset);
+    let format = match format {
+        ShapeFormat::Svg { still } => ShapeFormat::Svg { still: moved(still) },
+        ShapeFormat::Silhouette => ShapeFormat::Silhouette,
+        ShapeFormat::Nuke { still } => ShapeFormat::Nuke { still: moved(still) },
+        ShapeFormat::Natron { still } => ShapeFormat::Natron { still: moved(still) },
+    };
+    let mut found = shapes(&footage, text, format)?;
+    for shape in &mut found.shapes {
+        let keys = std::mem::take(&mut shape.keys).into_iter();
+        shape.keys = keys.map(|(frame, points)| (frame.saturating_sub(offset), points)).collect();
+        shape.absent.iter_mut().flatten().for_each(|frame| *frame = frame.saturating_sub(offset));
+    }
+    import::into_scene(&mut document.scene, found.shapes);
+    Ok(found.warnings)
+}
+
+/// The shapes of a file.
+fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
+    match format {
+        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still),
+        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage),
+        ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
+        ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
+    }
 }
 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names

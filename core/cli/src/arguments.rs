@@ -3,8 +3,10 @@
 use crate::failure::Failure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use rototoon::project::schema::MAX_FRAME_NUMBER;
 use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// The argument for the project document.
@@ -129,6 +131,38 @@ pub fn frames() -> Arg {
         .help("First and last frame, or one frame [default: all frames of the footage]")
         .allow_hyphen_values(true)
         .value_parser(crate::render::range)
+}
+
+/// `--parts NAME`, once for each part. `help` says what becomes of it.
+pub fn parts(help: &'static str) -> Arg {
+    Arg::new("parts").long("parts").value_name("NAME").help(help).action(ArgAction::Append)
+}
+
+/// The names of the parts that were asked for; `None` takes all.
+pub fn names(arguments: &ArgMatches) -> Option<Vec<String>> {
+    arguments.get_many::<String>("parts").map(|names| names.cloned().collect())
+}
+
+/// The frames that were asked for; `None` takes all.
+pub fn range(arguments: &ArgMatches) -> Option<RangeInclusive<FrameNumber>> {
+    arguments.get_one::<RangeInclusive<FrameNumber>>("frames").cloned()
+}
+
+/// `--frame-offset N`: what is added to frames of the document. `help` says where.
+pub fn frame_offset(help: &'static str) -> Arg {
+    let most = MAX_FRAME_NUMBER;
+    Arg::new("frame-offset")
+        .long("frame-offset")
+        .value_name("N")
+        .help(help)
+        .default_value("0")
+        .allow_negative_numbers(true)
+        .value_parser(value_parser!(FrameNumber).range(-most..=most))
+}
+
+/// The offset that was given.
+pub fn offset(arguments: &ArgMatches) -> FrameNumber {
+    arguments.get_one::<FrameNumber>("frame-offset").copied().unwrap_or(0)
 }
 
 /// `--drawings FRAMES`: the frames of drawings on keys.

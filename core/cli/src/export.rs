@@ -3,9 +3,9 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{ArgMatches, Command};
-use rototoon::export::{Motion, SvgOptions};
+use rototoon::export::{Motion, SvgOptions, svg};
 use rototoon::import::too_large;
-use rototoon::pipeline;
+use rototoon::pipeline::{self, Excerpt};
 use rototoon::project::write_whole;
 use rototoon::scene::parameters::Stage;
 
@@ -19,6 +19,11 @@ pub fn command() -> Command {
             "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette) or FILE.json",
         ))
         .args(arguments::of_stage(Stage::Export))
+        .arg(arguments::frames())
+        .arg(arguments::frame_offset(
+            "What is added to the numbers of the frames: with 1000, frame 1 becomes 1001. Not for .svg and .jsx, which count from their own beginning",
+        ))
+        .arg(arguments::parts("Writes only the part of this name; may be given several times"))
 }
 
 /// The kind of file: the end of the output's name in small letters.
@@ -37,7 +42,23 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
         _ => &["motion"],
     };
     arguments::without(given, unused, &format!("for a .{extension} file"))?;
+    let offset = arguments::offset(given);
+    if offset != 0 && ["svg", "jsx"].contains(&extension.as_str()) {
+        return Err(Failure::Use(format!(
+            "found --frame-offset {offset}: expected no such option for a .{extension} file, which counts from its own beginning"
+        )));
+    }
+    if extension == "json" && excerpt(given) != Excerpt::default() {
+        return Err(Failure::Use(
+            "found --frames, --parts or --frame-offset: expected no such option for a .json file, which has the whole document".into(),
+        ));
+    }
     Ok(extension)
+}
+
+/// What is asked for of the document.
+fn excerpt(given: &ArgMatches) -> Excerpt {
+    Excerpt { parts: arguments::names(given), frames: arguments::range(given), offset: arguments::offset(given) }
 }
 
 /// What is wrong with the options, whatever the document.
@@ -56,8 +77,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return project::save(document, from, to);
     }
     inputs.file(from).check(to)?;
+    let asked = excerpt(given);
+    let document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
-        return Err(Failure::Other(format!("{}: {nothing}", from.display())));
+        let chosen =
+            if asked.parts.is_some() || asked.frames.is_some() { "of the parts and frames asked for: " } else { "" };
+        return Err(Failure::Other(format!("{}: {chosen}{nothing}", from.display())));
     }
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
@@ -68,6 +93,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         "py" => pipeline::export_natron(&document, spacing),
         "jsx" => pipeline::export_after_effects(&document, spacing),
         "fxs" => pipeline::export_silhouette(&document, spacing),
+        // Regions and strokes belong to no part.
+        _ if asked.parts.is_some() => svg(&document.scene, &SvgOptions { motion, spacing }),
         _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })
             .map_err(|error| Failure::of(error, from))?,
     };

@@ -4,7 +4,8 @@ use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::file;
-use rototoon::pipeline::{self, ShapeFormat};
+use rototoon::import::ImportError;
+use rototoon::pipeline::{self, PipelineError, ShapeFormat};
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
 use std::path::PathBuf;
@@ -30,6 +31,9 @@ pub fn command() -> Command {
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(FrameNumber)),
         )
+        .arg(arguments::frame_offset(
+            "What the file's frames are ahead of the document's: with 1000, 1001 becomes frame 1. Not for .svg, which counts from its own beginning",
+        ))
 }
 
 /// Runs the subcommand.
@@ -55,9 +59,21 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             return Err(Failure::Use(message));
         }
     };
+    let offset = arguments::offset(given);
+    if offset != 0 && matches!(format, ShapeFormat::Svg { .. }) {
+        return Err(Failure::Use(format!(
+            "found --frame-offset {offset}: expected no such option for a .svg file, which counts from its own beginning"
+        )));
+    }
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.display()));
     let text = file::text(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
-    let warnings = pipeline::import(&mut document, &text, format).map_err(|error| failed(&error))?;
+    let warnings = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| match error {
+        PipelineError::Import(ImportError::Beyond(_)) => {
+            failed(&format!("{error}; --frame-offset says how far the file's frames are ahead of the document's"))
+        }
+        PipelineError::Import(error) => failed(&error),
+        other => Failure::of(other, from),
+    })?;
     for warning in warnings {
         line("warning", &format!("{}: {warning}", shapes.display()));
     }

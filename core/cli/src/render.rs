@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
-use clap::{Arg, ArgMatches, Command};
+use clap::{ArgMatches, Command};
 use rototoon::pipeline::{self, Picture, RenderJob};
 use rototoon::project::output::check_writable;
 use rototoon::render::OverlayOptions;
@@ -22,13 +22,10 @@ pub fn command() -> Command {
         ))
         .args(arguments::of_stage(Stage::Render))
         .arg(arguments::frames())
-        .arg(
-            Arg::new("parts")
-                .long("parts")
-                .value_name("NAME")
-                .help("Draws only the part of this name; may be given several times")
-                .action(clap::ArgAction::Append),
-        )
+        .arg(arguments::frame_offset(
+            "What is added to a frame's number in the name of its file: with 1000, frame 1 becomes 1001",
+        ))
+        .arg(arguments::parts("Draws only the part of this name; may be given several times"))
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -64,8 +61,9 @@ fn job(given: &ArgMatches) -> Result<RenderJob, Failure> {
                 confidence: arguments::flag(given, "confidence"),
             }),
         },
-        frames: given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned(),
-        parts: given.get_many::<String>("parts").map(|names| names.cloned().collect()),
+        frames: arguments::range(given),
+        offset: arguments::offset(given),
+        parts: arguments::names(given),
         scale: arguments::number(given, "scale"),
         output: output.to_owned(),
     })

@@ -1,6 +1,7 @@
 //! Why the pipeline stopped.
 
 use crate::fit::FitError;
+use crate::import::ImportError;
 use crate::memory::TooMuch;
 use crate::project::WriteError;
 use crate::render::EncodeError;
@@ -63,6 +64,9 @@ pub enum PipelineError {
         /// The error of the fit.
         source: FitError,
     },
+    /// Shapes of another program cannot be read.
+    #[error(transparent)]
+    Import(#[from] ImportError),
     /// The drawings cannot be tweened.
     #[error("{0}")]
     Tween(String),

@@ -58,6 +58,8 @@ pub struct RenderJob {
     pub picture: Picture,
     /// The frames; `None` renders the complete footage.
     pub frames: Option<RangeInclusive<FrameNumber>>,
+    /// What is added to the number of a frame in the name of its file.
+    pub offset: FrameNumber,
     /// Names of the parts; `None` takes all.
     pub parts: Option<Vec<String>>,
     /// Size of the picture as a multiple of the footage's. Other than 1 only for [`Picture::Paint`], [`Picture::Lines`] and

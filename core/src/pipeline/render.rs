@@ -2,7 +2,7 @@
 
 use super::paint::{Cels, sized};
 use super::picture::{Picture, RenderJob};
-use super::{PipelineError, frames, frames_of, memory};
+use super::{PipelineError, excerpt, frames, frames_of, memory};
 use crate::pictures::Sequence;
 use crate::project::{Document, Inputs, write_whole};
 use crate::render::header::{self, BT709, Facts};
@@ -117,9 +117,10 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     let footage = &document.scene.footage;
     let format = job.format()?;
     let range = frames_of(footage, job.frames.clone())?;
+    excerpt::shifted(footage, job.offset)?;
     let first = *range.start();
     let frames: Vec<(FrameNumber, PathBuf)> = match job.pattern(first == *range.end())? {
-        Some(pattern) => range.map(|frame| (frame, pattern.path(frame))).collect(),
+        Some(pattern) => range.map(|frame| (frame, pattern.path(frame.saturating_add(job.offset)))).collect(),
         None => vec![(first, PathBuf::from(&job.output))],
     };
     let inputs = Inputs::default().footage(footage, sequence.folder());
@@ -138,7 +139,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
     })
 }
 
-fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
+pub(super) fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
     let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::option("parts", error));
     names.iter().map(index).collect()
 }

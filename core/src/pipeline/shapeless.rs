@@ -2,18 +2,24 @@
 
 use super::strokes;
 use crate::project::Document;
-use crate::scene::Part;
+use crate::scene::{FrameNumber, Part};
 
 /// Why a file with this extension would have nothing of a document, as a message for the user; `None` if it has something. All forms
 /// take the contours of parts; SVG takes strokes and painted regions too. `extension` is in small letters.
 pub fn nothing_for(document: &Document, extension: &str) -> Option<String> {
-    let has_contour = |part: &Part| part.keys.values().chain(part.tracks.values()).any(|points| !points.is_empty());
+    let footage = &document.scene.footage;
+    let within = |frame: &FrameNumber| (footage.first..=footage.last).contains(frame);
+    let has_contour =
+        |part: &Part| part.keys.iter().chain(&part.tracks).any(|(frame, points)| within(frame) && !points.is_empty());
     if document.scene.parts.iter().any(has_contour) {
         return None;
     }
     // Fields that cannot be read have an error of their own where they are needed.
-    let strokes = strokes::strokes(document).map_or(0, |found| found.values().filter(|own| !own.is_empty()).count());
-    let painted = document.filled().map_or(0, |found| found.iter().filter(|own| !own.regions.is_empty()).count());
+    let strokes = strokes::strokes(document)
+        .map_or(0, |found| found.iter().filter(|(frame, own)| within(frame) && !own.is_empty()).count());
+    let painted = document
+        .filled()
+        .map_or(0, |found| found.iter().filter(|own| within(&own.frame) && !own.regions.is_empty()).count());
     let on = |what: &str, frames: usize| {
         let plural = if frames == 1 { "frame" } else { "frames" };
         (frames > 0).then(|| format!("{what} on {frames} {plural}"))

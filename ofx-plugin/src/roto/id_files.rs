@@ -32,7 +32,14 @@ pub fn write(effect: &Effect, document: &Document, name: &str, offset: i32) -> R
         }
         let path = pattern.path(frame.saturating_add(offset));
         let output = path.to_str().ok_or_else(|| told(&"found a name that is not Unicode"))?.to_owned();
-        let job = RenderJob { picture: Picture::Ids, frames: Some(frame..=frame), parts: None, scale: 1.0, output };
+        let job = RenderJob {
+            picture: Picture::Ids,
+            frames: Some(frame..=frame),
+            offset: 0,
+            parts: None,
+            scale: 1.0,
+            output,
+        };
         let folder = Path::new("");
         pool.install(|| pipeline::render(document, folder, &job, &Silent)).map_err(|error| told(&error))?;
     }

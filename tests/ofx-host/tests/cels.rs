@@ -50,8 +50,14 @@ fn written(text: &str, output: f64, frame: i32, scale: f64) -> Written {
     (0..=4).for_each(|frame| drawing().save(folder.path().join(format!("f_{frame}.png"))).unwrap());
     let write = |ending: &str| {
         let output_path = folder.path().join(format!("out_%d.{ending}")).to_str().unwrap().to_owned();
-        let job =
-            RenderJob { picture: look(output), frames: Some(frame..=frame), parts: None, scale, output: output_path };
+        let job = RenderJob {
+            picture: look(output),
+            frames: Some(frame..=frame),
+            offset: 0,
+            parts: None,
+            scale,
+            output: output_path,
+        };
         pipeline::render(&document, folder.path(), &job, &Silent).unwrap().remove(0)
     };
     let (exr, png) = (write("exr"), write("png"));

@@ -16,6 +16,65 @@ fn tracked(cartoon: &Cartoon) -> std::path::PathBuf {
 }
 
 #[test]
+fn what_is_exchanged_with_a_frame_offset_comes_back_with_it() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    for ending in ["nk", "ntp", "fxs"] {
+        let [plain, plate, a, b] = ["plain", "plate", "a", "b"].map(|name| cartoon.path(&format!("{name}.{ending}")));
+        good(&["export", text(&document), "-o", text(&plain)]);
+        good(&["export", text(&document), "-o", text(&plate), "--frame-offset", "1001"]);
+        assert_ne!(fs::read(&plain).unwrap(), fs::read(&plate).unwrap());
+        let (a, b) = (a.with_extension("json"), b.with_extension("json"));
+        good(&["import", text(&document), text(&plain), "-o", text(&a)]);
+        assert_eq!(good(&["import", text(&document), text(&plate), "-o", text(&b), "--frame-offset", "1001"]), "");
+        assert_eq!(fs::read(&a).unwrap(), fs::read(&b).unwrap(), "{ending}");
+        let said = bad(&["import", text(&document), text(&plate), "-o", text(&b)], 1);
+        assert!(said.contains(", expected a frame of the footage, 0 to 6; --frame-offset says"), "{said}");
+    }
+    for name in ["a.svg", "a.jsx"] {
+        let to = cartoon.path(name);
+        let said = bad(&["export", text(&document), "-o", text(&to), "--frame-offset", "1000"], 2);
+        assert!(said.contains("which counts from its own beginning") && !to.exists(), "{said}");
+    }
+    let pattern = cartoon.path("m.%04d.png");
+    let words = ["render", text(&document), "-o", text(&pattern), "--what", "matte", "--frames", "2-3"];
+    good(&[&words[..], &["--frame-offset", "-1"]].concat());
+    good(&[&words[..], &["--frame-offset", "1000"]].concat());
+    let made = |number: &str| fs::read(cartoon.path(&format!("m.{number}.png"))).unwrap();
+    assert_eq!(cartoon.names().iter().filter(|name| name.starts_with("m.")).count(), 4);
+    assert!(made("0001") == made("1002") && made("0002") == made("1003") && made("0001") != made("0002"));
+    let said = bad(&[&words[..], &["--frame-offset", "999999999"]].concat(), 2);
+    assert!(said.contains("--frame-offset: found 999999999: frame 6 becomes 1000000005"), "{said}");
+}
+
+#[test]
+fn some_parts_and_frames_can_leave_a_document() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    let (file, back) = (cartoon.path("some.fxs"), cartoon.path("back.json"));
+    let export = ["export", text(&document), "-o", text(&file)];
+    good(&[&export[..], &["--parts", "near", "--frames", "2-4", "--frame-offset", "1000"]].concat());
+    let bare = cartoon.document("bare.json", json!([]));
+    good(&["import", text(&bare), text(&file), "-o", text(&back), "--frame-offset", "1000"]);
+    let parts = read(&back)["parts"].as_array().unwrap().clone();
+    assert_eq!((parts.len(), &parts[0]["name"]), (1, &json!("near")));
+    assert_eq!(parts[0]["keys"].as_object().unwrap().keys().collect::<Vec<_>>(), ["2", "3", "4"]);
+    fs::remove_file(&file).unwrap();
+    let said = bad(&[&export[..], &["--parts", "neat"]].concat(), 2);
+    assert!(said.contains("--parts: no part \"neat\"; the document has \"near\", \"far\""), "{said}");
+    let said = bad(&[&export[..], &["--parts", "far", "--frames", "5-6"]].concat(), 1);
+    assert!(said.contains("of the parts and frames asked for: found no contour of a part"), "{said}");
+    let said = bad(&[&export[..], &["--frames", "5-9"]].concat(), 2);
+    assert!(
+        said.contains("--frames: found 5 to 9, expected frames of the footage, 0 to 6") && !file.exists(),
+        "{said}"
+    );
+    let json = cartoon.path("some.json");
+    let said = bad(&["export", text(&document), "-o", text(&json), "--parts", "near"], 2);
+    assert!(said.contains("which has the whole document") && !json.exists(), "{said}");
+}
+
+#[test]
 fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
     let cartoon = Cartoon::new();
     let (keyed, document) = (cartoon.keyed(), tracked(&cartoon));

@@ -38,6 +38,9 @@ pub enum ImportError {
     /// The file is too large.
     #[error("found more than {0} elements and texts, expected fewer")]
     Large(u32),
+    /// All keys of the file lie beyond the footage. The error is that of its first shape.
+    #[error("{0}")]
+    Beyond(Box<Self>),
     /// The file contains no shape.
     #[error("found no shape, expected {0}")]
     Nothing(&'static str),

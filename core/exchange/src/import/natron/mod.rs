@@ -59,7 +59,7 @@ pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shape
             reader.layer(base)?;
         }
     }
-    reader.reach.check()?;
+    reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
     let warnings = reader.left_out.lines(text);
     if reader.shapes.is_empty() && warnings.is_empty() {
         return Err(ImportError::Nothing("a Bézier curve of a Roto or RotoPaint node"));

@@ -65,7 +65,7 @@ pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes,
     for item in items(text)? {
         reader.walk(&item, &mut Vec::new())?;
     }
-    reader.reach.check()?;
+    reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
     if reader.found.shapes.is_empty() && reader.found.warnings.is_empty() {
         return Err(ImportError::Nothing("a curvegroup of a Roto or RotoPaint node"));
     }

@@ -55,7 +55,7 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
         reach: Reach::new(),
     };
     reader.walk(root, &mut Vec::new())?;
-    reader.reach.check()?;
+    reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
     if reader.shapes.is_empty() && !reader.omitted {
         return Err(ImportError::Nothing("an <Object type=\"Shape\"> that is not hidden"));
     }
