@@ -348,6 +348,7 @@ pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
 mod tests {
     use super::*;
     use crate::export::Motion;
+    use crate::render::form::{Bits, Packing};
     use crate::scene::parameters::{Kind, find};
     use crate::snap::CorridorWidth;
     use crate::track::Preset;
@@ -370,6 +371,8 @@ mod tests {
         assert_eq!([share, least, most], ["corridor_share", "corridor_least", "corridor_most"].map(default));
         assert_eq!(crate::render::OverlayOptions::default().line_width, default("line_width"));
         assert_eq!(SvgOptions::default().spacing, default("spacing"));
+        assert_eq!(choices("exr"), Bits::ALL.map(|(_, id)| id));
+        assert_eq!(choices("compression"), Packing::ALL.map(|(_, id)| id));
     }
 
     #[test]

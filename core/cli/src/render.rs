@@ -5,7 +5,8 @@ use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline::{self, Picture, RenderJob};
 use rototoon::project::output::check_writable;
-use rototoon::render::OverlayOptions;
+use rototoon::render::form::{Bits, Form, Packing};
+use rototoon::render::{Format, OverlayOptions};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, FramePattern};
 use std::ops::RangeInclusive;
@@ -44,6 +45,9 @@ fn job(given: &ArgMatches) -> Result<RenderJob, Failure> {
         _ => &["layers", "multipart", "line_width", "points", "confidence"],
     };
     arguments::without(given, unused, &format!("with --what {what}"))?;
+    if Format::of(Path::new(output)) == Some(Format::Png) {
+        arguments::without(given, &["exr", "compression"], "for a .png file")?;
+    }
     Ok(RenderJob {
         picture: match what {
             "matte" if layers => Picture::Layers,
@@ -65,6 +69,10 @@ fn job(given: &ArgMatches) -> Result<RenderJob, Failure> {
         offset: arguments::offset(given),
         parts: arguments::names(given),
         scale: arguments::number(given, "scale"),
+        form: Form {
+            bits: Bits::from_id(arguments::choice(given, "exr")).unwrap_or_default(),
+            packing: Packing::from_id(arguments::choice(given, "compression")).unwrap_or_default(),
+        },
         output: output.to_owned(),
     })
 }

@@ -1,10 +1,12 @@
 //! Encodes pictures as bytes of PNG or OpenEXR files.
 //!
-//! PNG contains display colours with 8 bits for each channel; mattes have 16 bits. OpenEXR contains 32-bit floats. Its
+//! PNG contains display colours with 8 bits for each channel; mattes have 16 bits. OpenEXR contains floats, of 32 bits if nothing
+//! else is asked for ([`super::form`]). Its
 //! colours are in linear light. Its mattes are white premultiplied by alpha, the form that compositors expect; its
 //! cutouts are premultiplied too. The same picture gives the same bytes: OpenEXR is written by [`super::layers`], line
 //! by line in their order. The parallel writer of the image library would write the blocks as they become ready.
 
+use super::form::{Bits, Form, Packing};
 use super::layers::{self, Channel};
 use image::codecs::png::PngEncoder;
 use image::{DynamicImage, ImageBuffer};
@@ -19,15 +21,18 @@ pub enum Format {
     /// Portable Network Graphics.
     Png,
     /// OpenEXR.
-    Exr,
+    Exr(Form),
 }
 
 impl Format {
+    /// OpenEXR in its usual form.
+    pub const EXR: Self = Self::Exr(Form { bits: Bits::Float, packing: Packing::Zip });
+
     /// The format for the extension of a file name; `None` for other extensions.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "png" => Some(Self::Png),
-            "exr" => Some(Self::Exr),
+            "exr" => Some(Self::EXR),
             _ => None,
         }
     }
@@ -54,7 +59,7 @@ pub fn colours(picture: &Raster<Colour>, format: Format) -> Result<Vec<u8>, Enco
             let image = ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8);
             png(image, picture.width(), picture.height())
         }
-        Format::Exr => exr(picture, ["R", "G", "B"], |pixel, channel| colour::decode(pixel[channel])),
+        Format::Exr(form) => exr(picture, ["R", "G", "B"], form, |pixel, channel| colour::decode(pixel[channel])),
     }
 }
 
@@ -82,7 +87,7 @@ pub fn layer(picture: &Raster<[f32; 4]>, format: Format) -> Result<Vec<u8>, Enco
             let shown = Raster::from_fn(width, height, |x, y| displayed(picture.get(x, y)));
             premultiplied(&shown)
         }
-        Format::Exr => exr(picture, ["R", "G", "B", "A"], |pixel, channel| pixel[channel]),
+        Format::Exr(form) => exr(picture, ["R", "G", "B", "A"], form, |pixel, channel| pixel[channel]),
     }
 }
 
@@ -102,7 +107,7 @@ pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeErr
             let image = ImageBuffer::from_raw(width, height, values).map(DynamicImage::ImageLuma16);
             png(image, picture.width(), picture.height())
         }
-        Format::Exr => exr(picture, ["R", "G", "B", "A"], |&coverage, _| coverage),
+        Format::Exr(form) => exr(picture, ["R", "G", "B", "A"], form, |&coverage, _| coverage),
     }
 }
 
@@ -110,6 +115,7 @@ pub fn matte(picture: &Raster<f32>, format: Format) -> Result<Vec<u8>, EncodeErr
 fn exr<T: Copy, const N: usize>(
     picture: &Raster<T>,
     names: [&str; N],
+    form: Form,
     value: impl Fn(&T, usize) -> f32,
 ) -> Result<Vec<u8>, EncodeError> {
     let channel = |(index, name): (usize, &str)| Channel {
@@ -117,7 +123,7 @@ fn exr<T: Copy, const N: usize>(
         values: picture.data().iter().map(|pixel| value(pixel, index)).collect(),
     };
     let channels = names.into_iter().enumerate().map(channel).collect();
-    layers::encode(picture.width(), picture.height(), channels, &[])
+    layers::encode((picture.width(), picture.height()), channels, &[], form)
 }
 
 fn png(image: Option<DynamicImage>, width: usize, height: usize) -> Result<Vec<u8>, EncodeError> {
@@ -136,10 +142,10 @@ mod tests {
     #[test]
     fn what_is_encoded_is_decoded() {
         let picture = Raster::from_fn(5, 3, |x, y| [x as f32 / 4.0, y as f32 / 2.0, 0.2]);
-        for (format, exact) in [(Format::Png, 0.003), (Format::Exr, 1e-5)] {
+        for (format, exact) in [(Format::Png, 0.003), (Format::EXR, 1e-5)] {
             let image = image::load_from_memory(&colours(&picture, format).unwrap()).unwrap().to_rgb32f();
             for (pixel, colour) in image.pixels().zip(picture.data()) {
-                let wanted = colour.map(|c| if format == Format::Exr { colour::decode(c) } else { c });
+                let wanted = colour.map(|c| if format == Format::EXR { colour::decode(c) } else { c });
                 assert!(
                     pixel.0.iter().zip(wanted).all(|(a, b)| (a - b).abs() < exact),
                     "{format:?} {pixel:?} {wanted:?}"
@@ -151,7 +157,7 @@ mod tests {
     #[test]
     fn mattes_keep_their_steps() {
         let picture = Raster::from_fn(300, 1, |x, _| x as f32 / 299.0);
-        for format in [Format::Png, Format::Exr] {
+        for format in [Format::Png, Format::EXR] {
             let image = image::load_from_memory(&matte(&picture, format).unwrap()).unwrap().to_rgba32f();
             for (pixel, value) in image.pixels().zip(picture.data()) {
                 assert!((pixel.0[0] - value).abs() < 1e-4, "{format:?}");
@@ -164,18 +170,18 @@ mod tests {
         // Many blocks of lines, so that a parallel writer would finish them in changing order.
         let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729) % 1013) as f32 / 1013.0;
         let colour = Raster::from_fn(200, 600, |x, y| [noise(x, y), noise(y, x), 0.5]);
-        let first = colours(&colour, Format::Exr).unwrap();
+        let first = colours(&colour, Format::EXR).unwrap();
         let shape = Raster::from_fn(200, 600, noise);
-        let first_matte = matte(&shape, Format::Exr).unwrap();
+        let first_matte = matte(&shape, Format::EXR).unwrap();
         for _ in 0..12 {
-            assert!(colours(&colour, Format::Exr).unwrap() == first);
-            assert!(matte(&shape, Format::Exr).unwrap() == first_matte);
+            assert!(colours(&colour, Format::EXR).unwrap() == first);
+            assert!(matte(&shape, Format::EXR).unwrap() == first_matte);
         }
     }
 
     #[test]
     fn the_name_gives_the_format() {
-        assert_eq!(Format::of(Path::new("a.0001.EXR")), Some(Format::Exr));
+        assert_eq!(Format::of(Path::new("a.0001.EXR")), Some(Format::EXR));
         assert_eq!(Format::of(Path::new("a.jpg")), None);
         assert_eq!(Format::of(Path::new("png")), None);
     }

@@ -162,6 +162,7 @@ fn entry(bytes: &[u8]) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::form::Form;
     use crate::layers::{Channel, encode, encode_parts};
     use exr::meta::MetaData;
     use exr::prelude::{ReadChannels, ReadLayers};
@@ -172,7 +173,10 @@ mod tests {
         let channels = |name: &str| vec![Channel { name: name.into(), values: values.clone() }];
         let parts = vec![("a".to_owned(), channels("A")), ("b".to_owned(), channels("Z"))];
         let mut facts = Facts { pixel_aspect: 2.0, chromaticities: BT709, fps: 23.976, time_code: None };
-        for plain in [encode(40, 70, channels("A"), &[]).unwrap(), encode_parts(40, 70, parts).unwrap()] {
+        for plain in [
+            encode((40, 70), channels("A"), &[], Form::default()).unwrap(),
+            encode_parts((40, 70), parts, Form::default()).unwrap(),
+        ] {
             let mut told = plain.clone();
             // Facts of a frame replace those of another one.
             for code in [Some([0x0102_0304, 7]), None, Some([0x1112_1314, 9])] {
@@ -200,7 +204,7 @@ mod tests {
             }
         }
         assert_eq!(describe(b"\x89PNG and more".to_vec(), &facts), b"\x89PNG and more");
-        let whole = encode(40, 70, channels("A"), &[]).unwrap();
+        let whole = encode((40, 70), channels("A"), &[], Form::default()).unwrap();
         for end in 0..400 {
             assert_eq!(describe(whole[..end].to_vec(), &facts).get(..4), whole[..end].get(..4), "{end}");
         }
@@ -227,7 +231,10 @@ mod tests {
     fn every_part_gets_the_aspect_and_nothing_else_changes() {
         let channels = || vec![Channel { name: "A".into(), values: vec![0.5; 6] }];
         let parts = vec![("a".to_owned(), channels()), ("b".to_owned(), channels())];
-        for plain in [encode(3, 2, channels(), &[]).unwrap(), encode_parts(3, 2, parts).unwrap()] {
+        for plain in [
+            encode((3, 2), channels(), &[], Form::default()).unwrap(),
+            encode_parts((3, 2), parts, Form::default()).unwrap(),
+        ] {
             let mut wide = plain.clone();
             set_pixel_aspect(&mut wide, 2.0);
             let meta = MetaData::read_from_buffered(&wide[..], true).unwrap();

@@ -8,6 +8,7 @@
 use super::composite::Layers;
 use super::coverage::Window;
 use super::encode::{self, EncodeError, Format};
+use super::form::Form;
 use super::layers::{self, Channel, layer_name, layer_names};
 use super::streamed::{self, Line, Part};
 use super::visible::{Visible, visible};
@@ -45,9 +46,7 @@ pub fn id_picture(
 ) -> Result<Vec<u8>, EncodeError> {
     let visible = visible(scene, frame, parts);
     let picture = ids(&visible);
-    if format == Format::Png {
-        return encode::premultiplied(&picture);
-    }
+    let Format::Exr(form) = format else { return encode::premultiplied(&picture) };
     let (width, height) = (picture.width(), picture.height());
     let names: Vec<&str> = scene.parts.iter().map(|part| &part.name[..]).collect();
     let attributes = cryptomatte::attributes(closed(scene, parts).map(|index| names[index]))
@@ -61,7 +60,7 @@ pub fn id_picture(
         };
         channels.push(Channel { name: name.to_owned(), values: picture.data().iter().map(light).collect() });
     }
-    layers::encode(width, height, channels, &attributes)
+    layers::encode((width, height), channels, &attributes, form)
 }
 
 /// Encodes the matte of all parts and of each part as OpenEXR. `parts` selects parts by index; `None` takes all.
@@ -69,12 +68,17 @@ pub fn id_picture(
 /// # Errors
 ///
 /// An [`EncodeError`].
-pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
+pub fn matte_layers(
+    scene: &Scene,
+    frame: FrameNumber,
+    parts: Option<&[usize]>,
+    form: Form,
+) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
     let masks = Masks::new(scene, frame, parts);
     let mut channels = equal(&whole);
     channels.extend(masks.lines().map(|(name, line)| (format!("{name}.A"), line)));
-    streamed::encode(whole.width(), whole.height(), vec![Part { name: None, channels }])
+    streamed::encode((whole.width(), whole.height()), vec![Part { name: None, channels }], form)
 }
 
 /// Encodes the same mattes as the parts of one OpenEXR file. The first has the matte of all parts in R, G, B and A, and the
@@ -83,7 +87,12 @@ pub fn matte_layers(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) 
 /// # Errors
 ///
 /// An [`EncodeError`].
-pub fn matte_parts(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Result<Vec<u8>, EncodeError> {
+pub fn matte_parts(
+    scene: &Scene,
+    frame: FrameNumber,
+    parts: Option<&[usize]>,
+    form: Form,
+) -> Result<Vec<u8>, EncodeError> {
     let whole = matte::matte(scene, frame, parts);
     let masks = Masks::new(scene, frame, parts);
     // A part of the document keeps its name, whatever it is.
@@ -92,7 +101,7 @@ pub fn matte_parts(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -
     files.extend(
         masks.lines().map(|(name, line)| Part { name: Some(name.to_owned()), channels: vec![("A".to_owned(), line)] }),
     );
-    streamed::encode(whole.width(), whole.height(), files)
+    streamed::encode((whole.width(), whole.height()), files, form)
 }
 
 /// The masks of closed parts, each with the name of its layer.
@@ -219,7 +228,7 @@ mod tests {
     fn every_part_is_keyed_from_the_cryptomatte_layers() {
         for count in [1, 3, 9] {
             let scene = scene(count);
-            let file = read(&id_picture(&scene, 0, None, Format::Exr).unwrap());
+            let file = read(&id_picture(&scene, 0, None, Format::EXR).unwrap());
             assert_eq!(file.0.len() % 4, 0);
             let mut nearest: Vec<usize> = (0..count).collect();
             nearest.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth));
@@ -242,7 +251,7 @@ mod tests {
 
     #[test]
     fn ranks_fall_and_what_is_unused_is_zero() {
-        let (channels, _) = read(&id_picture(&scene(9), 0, None, Format::Exr).unwrap());
+        let (channels, _) = read(&id_picture(&scene(9), 0, None, Format::EXR).unwrap());
         let rank = |rank: usize| {
             let [id, coverage] = [["R", "G"], ["B", "A"]][rank % 2];
             let name = |channel: &str| format!("CryptoObject{:02}.{channel}", rank / 2);
@@ -265,7 +274,7 @@ mod tests {
             let points = [(left, 20.0), (right, 20.0), (right, 30.0), (left, 30.0)].map(|(x, y)| Point::new(x, y));
             part.keys.insert(0, points.into());
         }
-        let file = read(&id_picture(&scene, 0, None, Format::Exr).unwrap());
+        let file = read(&id_picture(&scene, 0, None, Format::EXR).unwrap());
         for part in &scene.parts {
             assert!((keyed(&file, &part.name)[25 * 60 + 30] - 1.0 / 9.0).abs() < 1e-5);
         }
@@ -275,7 +284,7 @@ mod tests {
     #[test]
     fn layers_hold_whole_mattes() {
         let scene = scene(3);
-        let (channels, _) = read(&matte_layers(&scene, 0, Some(&[0, 2])).unwrap());
+        let (channels, _) = read(&matte_layers(&scene, 0, Some(&[0, 2]), Form::default()).unwrap());
         let names: Vec<_> = channels.keys().map(String::as_str).collect();
         assert_eq!(names, ["A", "B", "G", "R", "part 0_é.A", "part 2_é.A"]);
         assert_eq!(channels["A"], matte::matte(&scene, 0, Some(&[0, 2])).data());
@@ -287,7 +296,7 @@ mod tests {
         let mut scene = scene(3);
         // A name that the file's first part would have.
         scene.parts[1].name = "rgba".into();
-        let bytes = matte_parts(&scene, 0, Some(&[1, 2])).unwrap();
+        let bytes = matte_parts(&scene, 0, Some(&[1, 2]), Form::default()).unwrap();
         let read = exr::prelude::read_all_flat_layers_from_file;
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
@@ -310,7 +319,7 @@ mod tests {
         let mut scene = scene(3);
         scene.parts[1].closed = false;
         let named = |parts: Option<&[usize]>| {
-            let (_, attributes) = read(&id_picture(&scene, 0, parts, Format::Exr).unwrap());
+            let (_, attributes) = read(&id_picture(&scene, 0, parts, Format::EXR).unwrap());
             let manifest = attributes.iter().find(|(key, _)| key.ends_with("/manifest")).unwrap().1;
             serde_json::from_str::<BTreeMap<String, String>>(manifest).unwrap().into_keys().collect::<Vec<_>>()
         };

@@ -1,16 +1,17 @@
-//! OpenEXR files with any number of named channels of 32-bit floats, in one part or in several, compressed without loss.
+//! OpenEXR files with any number of named channels of floats, in one part or in several, compressed without loss ([`super::form`]).
 //!
 //! A channel `near arm.A` belongs to the layer `near arm`; all readers of OpenEXR follow this rule. Part names may be
 //! any text. Characters that separate layers or are not allowed in names are replaced ([`layer_name`]).
 
 use super::encode::EncodeError;
+use super::form::Form;
 use super::header;
 use exr::image::write::WritableImage;
 use exr::image::write::layers::WritableLayers;
 use exr::image::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer};
 use exr::meta::attribute::{AttributeValue, LineOrder, Text};
 use exr::meta::header::{ImageAttributes, LayerAttributes};
-use exr::prelude::{Blocks, Compression, IntegerBounds};
+use exr::prelude::{Blocks, IntegerBounds};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
@@ -74,16 +75,16 @@ fn plain(name: &str) -> String {
 ///
 /// An [`EncodeError`] if a channel has another number of values or the encoder fails.
 pub fn encode(
-    width: usize,
-    height: usize,
+    (width, height): (usize, usize),
     channels: Vec<Channel>,
     attributes: &[Attribute],
+    form: Form,
 ) -> Result<Vec<u8>, EncodeError> {
     let mut header = LayerAttributes::default();
     for Attribute { name, value } in attributes {
         header.other.insert(text(name), AttributeValue::Text(text(value)));
     }
-    let layer = layer((width, height), channels, header)?;
+    let layer = layer((width, height), channels, header, form)?;
     written((width, height), &Image::from_layer(layer))
 }
 
@@ -94,7 +95,11 @@ pub fn encode(
 ///
 /// An [`EncodeError`] if there is no part, two have the same name, a channel has another number of values, or the encoder
 /// fails.
-pub fn encode_parts(width: usize, height: usize, parts: Vec<(String, Vec<Channel>)>) -> Result<Vec<u8>, EncodeError> {
+pub fn encode_parts(
+    (width, height): (usize, usize),
+    parts: Vec<(String, Vec<Channel>)>,
+    form: Form,
+) -> Result<Vec<u8>, EncodeError> {
     let failed = |reason: String| EncodeError { width, height, reason };
     let mut names = BTreeSet::new();
     if let Some((name, _)) = parts.iter().find(|(name, _)| !names.insert(name)) {
@@ -103,7 +108,8 @@ pub fn encode_parts(width: usize, height: usize, parts: Vec<(String, Vec<Channel
     if parts.is_empty() {
         return Err(failed("found no part: expected at least one".to_owned()));
     }
-    let part = |(name, channels): (String, _)| layer((width, height), channels, LayerAttributes::named(text(&name)));
+    let part =
+        |(name, channels): (String, _)| layer((width, height), channels, LayerAttributes::named(text(&name)), form);
     let layers: Vec<_> = parts.into_iter().map(part).collect::<Result<_, _>>()?;
     let shown = ImageAttributes::new(IntegerBounds::from_dimensions((width, height)));
     written((width, height), &Image::from_layers(shown, layers))
@@ -119,6 +125,7 @@ fn layer(
     (width, height): (usize, usize),
     channels: Vec<Channel>,
     header: LayerAttributes,
+    form: Form,
 ) -> Result<Layer<AnyChannels<FlatSamples>>, EncodeError> {
     let mut list = Vec::new();
     for channel in channels {
@@ -126,10 +133,13 @@ fn layer(
             let reason = format!("channel {:?} has {} values", channel.name, channel.values.len());
             return Err(EncodeError { width, height, reason });
         }
-        list.push(AnyChannel::new(text(&channel.name), FlatSamples::F32(channel.values)));
+        list.push(AnyChannel::new(text(&channel.name), form.samples(&channel.name, channel.values)));
     }
-    let encoding =
-        Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
+    let encoding = Encoding {
+        compression: form.packing.compression(),
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
     Ok(Layer::new((width, height), header, encoding, AnyChannels::sort(list.into_iter().collect())))
 }
 
@@ -166,7 +176,7 @@ mod tests {
         let file = || {
             let channels = ["B", "near arm.A", "A"].map(|name| Channel { name: name.into(), values: vec![0.5; 12] });
             let attribute = |k: usize| Attribute { name: format!("n{k}"), value: format!("v{k}") };
-            encode(4, 3, channels.into(), &(0..20).map(attribute).collect::<Vec<_>>()).unwrap()
+            encode((4, 3), channels.into(), &(0..20).map(attribute).collect::<Vec<_>>(), Form::default()).unwrap()
         };
         let first = file();
         assert!((0..8).all(|_| file() == first));
@@ -190,7 +200,7 @@ mod tests {
                 ("près.1 \"x\"".to_owned(), vec![channel("A", 0.75)]),
                 ("arm".to_owned(), vec![channel("A", 1.0)]),
             ];
-            encode_parts(4, 3, parts).unwrap()
+            encode_parts((4, 3), parts, Form::default()).unwrap()
         };
         let first = file();
         assert!((0..8).all(|_| file() == first));
@@ -219,7 +229,7 @@ mod tests {
     #[test]
     fn parts_of_a_file_without_names_of_their_own_are_refused() {
         let part = |name: &str| (name.to_owned(), vec![Channel { name: "A".into(), values: vec![0.0; 4] }]);
-        let told = |parts: Vec<_>| encode_parts(2, 2, parts).unwrap_err().to_string();
+        let told = |parts: Vec<_>| encode_parts((2, 2), parts, Form::default()).unwrap_err().to_string();
         assert!(told(vec![part("arm"), part("leg"), part("arm")]).contains("have the name \"arm\""));
         assert!(told(vec![]).contains("found no part"));
     }
@@ -227,7 +237,7 @@ mod tests {
     #[test]
     fn channels_of_another_size_are_refused() {
         let channel = Channel { name: "A".into(), values: vec![0.0; 3] };
-        let error = encode(2, 2, vec![channel], &[]).unwrap_err();
+        let error = encode((2, 2), vec![channel], &[], Form::default()).unwrap_err();
         assert!(error.to_string().contains("channel \"A\" has 3 values"), "{error}");
     }
 }

@@ -14,6 +14,7 @@
 //! - [`paint`](mod@paint): painted regions and strokes, alone and below their drawing
 //! - [`stroke`]: strokes of varying width as areas
 //! - [`layers`]: OpenEXR files of any number of named channels
+//! - [`form`]: bits and compression of OpenEXR files
 //! - [`header`]: the headers of OpenEXR files
 //! - [`motion`]: contours between frames
 //! - [`grow`]: the outline moved outward or inward
@@ -55,6 +56,7 @@ pub mod coverage;
 pub mod cryptomatte;
 pub mod encode;
 pub mod feather;
+pub mod form;
 pub mod grow;
 pub mod header;
 pub mod ids;

@@ -240,9 +240,7 @@ pub fn multiplied(over: [f32; 4], below: [f32; 4]) -> [f32; 4] {
 pub fn paint_picture(regions: &[Region], width: usize, height: usize, format: Format) -> Result<Vec<u8>, EncodeError> {
     let shares = shares(regions, width, height);
     let picture = paint(regions, &shares);
-    if format == Format::Png {
-        return encode::layer(&picture, format);
-    }
+    let Format::Exr(form) = format else { return encode::layer(&picture, format) };
     let names: Vec<&str> = regions.iter().map(|region| &region.name[..]).collect();
     let attributes = cryptomatte::attributes(names.iter().copied()).map_err(|error| EncodeError {
         width,
@@ -254,7 +252,7 @@ pub fn paint_picture(regions: &[Region], width: usize, height: usize, format: Fo
         let values = picture.data().iter().map(|pixel| pixel[index]).collect();
         channels.push(Channel { name: name.to_owned(), values });
     }
-    layers::encode(width, height, channels, &attributes)
+    layers::encode((width, height), channels, &attributes, form)
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! is asked for. Otherwise the files are as those of [`super::layers`].
 
 use super::encode::EncodeError;
+use super::form::{Form, half};
 use super::header;
 use super::layers::text;
 use exr::block::writer::{ChunksWriter, write_chunks_with};
@@ -13,7 +14,6 @@ use exr::error::UnitResult;
 use exr::meta::BlockDescription;
 use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::{Header, LayerAttributes};
-use exr::prelude::Compression;
 use std::io::Cursor;
 
 /// Writes the values of a line, counted from 0 at the top. Lines come in their order, each once.
@@ -32,12 +32,16 @@ pub(super) struct Part<'a> {
 /// # Errors
 ///
 /// An [`EncodeError`] if the encoder fails.
-pub(super) fn encode(width: usize, height: usize, mut parts: Vec<Part>) -> Result<Vec<u8>, EncodeError> {
+pub(super) fn encode(
+    (width, height): (usize, usize),
+    mut parts: Vec<Part>,
+    form: Form,
+) -> Result<Vec<u8>, EncodeError> {
     let failed = |reason: String| EncodeError { width, height, reason };
     for part in &mut parts {
         part.channels.sort_by(|a, b| a.0.as_bytes().cmp(b.0.as_bytes()));
     }
-    let headers = parts.iter().map(|part| header_of(part, (width, height))).collect();
+    let headers = parts.iter().map(|part| header_of(part, (width, height), form)).collect();
     let mut bytes = Cursor::new(Vec::new());
     let written = write_chunks_with(&mut bytes, headers, true, |meta, writer| -> UnitResult {
         let mut values = vec![0.0f32; width];
@@ -47,7 +51,12 @@ pub(super) fn encode(width: usize, height: usize, mut parts: Vec<Part>) -> Resul
                 let place = line.location;
                 values.fill(0.0);
                 (parts[place.layer].channels[place.channel].1)(place.position.y(), &mut values);
-                if let Err(error) = line.write_samples_from_slice(&values) {
+                let channel = &parts[place.layer].channels[place.channel].0;
+                let written = match form.kind(channel) {
+                    SampleType::F16 => line.write_samples(|at| half(values[at])),
+                    _ => line.write_samples_from_slice(&values),
+                };
+                if let Err(error) = written {
                     problem = Err(error);
                 }
             });
@@ -62,17 +71,18 @@ pub(super) fn encode(width: usize, height: usize, mut parts: Vec<Part>) -> Resul
     Ok(bytes)
 }
 
-fn header_of(part: &Part, size: (usize, usize)) -> Header {
-    let channel = |(name, _): &(String, Line)| ChannelDescription::named(text(name), SampleType::F32);
+fn header_of(part: &Part, size: (usize, usize), form: Form) -> Header {
+    let channel = |(name, _): &(String, Line)| ChannelDescription::named(text(name), form.kind(name));
     let own = part.name.as_ref().map_or_else(LayerAttributes::default, |name| LayerAttributes::named(text(name)));
     Header::new(text(""), size, part.channels.iter().map(channel).collect())
-        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_encoding(form.packing.compression(), BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(own)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::form::{Bits, Packing};
     use crate::layers::{self, Channel};
 
     fn value(channel: usize, x: usize, y: usize) -> f32 {
@@ -97,12 +107,17 @@ mod tests {
         };
         let streamed = |names: &[&str]| names.iter().enumerate().map(|(k, name)| ((*name).into(), line(k))).collect();
         let kept = |names: &[&str]| names.iter().enumerate().map(|(k, name)| whole(k, name)).collect::<Vec<_>>();
-        let one = encode(width, height, vec![Part { name: None, channels: streamed(&names[0]) }]).unwrap();
-        assert!(one == layers::encode(width, height, kept(&names[0]), &[]).unwrap());
-        let parts = ["rgba", "a", "é"].iter().zip(&names);
-        let part = |(name, names): (&&str, &Vec<&str>)| Part { name: Some((*name).into()), channels: streamed(names) };
-        let several = encode(width, height, parts.clone().map(part).collect()).unwrap();
-        let expected = parts.map(|(name, names)| ((*name).to_owned(), kept(names))).collect();
-        assert!(several == layers::encode_parts(width, height, expected).unwrap());
+        for form in
+            Bits::ALL.map(|(bits, _)| Form { bits, packing: Packing::Zips }).into_iter().chain([Form::default()])
+        {
+            let one = encode((width, height), vec![Part { name: None, channels: streamed(&names[0]) }], form).unwrap();
+            assert!(one == layers::encode((width, height), kept(&names[0]), &[], form).unwrap(), "{form:?}");
+            let parts = ["rgba", "a", "é"].iter().zip(&names);
+            let part =
+                |(name, names): (&&str, &Vec<&str>)| Part { name: Some((*name).into()), channels: streamed(names) };
+            let several = encode((width, height), parts.clone().map(part).collect(), form).unwrap();
+            let expected = parts.map(|(name, names)| ((*name).to_owned(), kept(names))).collect();
+            assert!(several == layers::encode_parts((width, height), expected, form).unwrap(), "{form:?}");
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! before there is a document to draw.
 
 use super::PipelineError;
+use crate::render::form::Form;
 use crate::render::{Format, OverlayOptions};
 use crate::scene::{FrameNumber, FramePattern, PatternError};
 use std::ops::RangeInclusive;
@@ -65,6 +66,8 @@ pub struct RenderJob {
     /// Size of the picture as a multiple of the footage's. Other than 1 only for [`Picture::Paint`], [`Picture::Lines`] and
     /// [`Picture::Cel`], which are drawn without the footage.
     pub scale: f64,
+    /// The form of OpenEXR files.
+    pub form: Form,
     /// The output path, ending in `.png` or `.exr`: a pattern with one `%d` or `%0Nd`, or a plain path for a single
     /// frame.
     pub output: String,
@@ -88,10 +91,11 @@ impl RenderJob {
         let expected =
             |what: &str| PipelineError::Request(format!("{}: expected a name that ends in {what}", self.output));
         let format = Format::of(Path::new(&self.output)).ok_or_else(|| expected(".png or .exr"))?;
-        match self.picture {
-            Picture::Layers if format != Format::Exr => Err(expected(".exr for layers")),
-            Picture::Parts if format != Format::Exr => Err(expected(".exr for several parts")),
-            _ => Ok(format),
+        match (format, self.picture) {
+            (Format::Png, Picture::Layers) => Err(expected(".exr for layers")),
+            (Format::Png, Picture::Parts) => Err(expected(".exr for several parts")),
+            (Format::Png, _) => Ok(format),
+            (Format::Exr(_), _) => Ok(Format::Exr(self.form)),
         }
     }
 

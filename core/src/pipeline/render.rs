@@ -80,8 +80,8 @@ fn picture(
             let pixels = sequence.layer(frame)?;
             render::encode::layer(&render::cutout(&document.scene, frame, &pixels, parts), plan.format)
         }
-        Picture::Layers => render::matte_layers(&document.scene, frame, parts),
-        Picture::Parts => render::matte_parts(&document.scene, frame, parts),
+        Picture::Layers => render::matte_layers(&document.scene, frame, parts, job.form),
+        Picture::Parts => render::matte_parts(&document.scene, frame, parts, job.form),
         Picture::Ids => render::id_picture(&document.scene, frame, parts, plan.format),
         Picture::Paint | Picture::Lines | Picture::Cel => {
             let shown = plan.cels.on(frame, job.scale);
@@ -97,7 +97,7 @@ fn picture(
         }
     };
     let bytes = bytes.map_err(|source| PipelineError::Encode { frame, source })?;
-    Ok(if plan.format == Format::Exr { described(bytes, sequence, job, plan, frame) } else { bytes })
+    Ok(if matches!(plan.format, Format::Exr(_)) { described(bytes, sequence, job, plan, frame) } else { bytes })
 }
 
 /// An OpenEXR file with what is known of its pixels. What shows the footage has the footage's colours.

@@ -12,6 +12,7 @@ use crate::ofx::progress::Bar;
 use crate::ofx::{Effect, Failure};
 use rototoon::pipeline::{self, Picture, RenderJob};
 use rototoon::project::Document;
+use rototoon::render::form::Form;
 use rototoon::scene::Silent;
 use rototoon::scene::pattern::FramePattern;
 use std::path::Path;
@@ -38,6 +39,7 @@ pub fn write(effect: &Effect, document: &Document, name: &str, offset: i32) -> R
             offset: 0,
             parts: None,
             scale: 1.0,
+            form: Form::default(),
             output,
         };
         let folder = Path::new("");

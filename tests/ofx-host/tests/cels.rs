@@ -10,6 +10,7 @@ use rototoon::pictures::Sequence;
 use rototoon::pipeline::{self, Picture as Look, RenderJob};
 use rototoon::project::Document;
 use rototoon::render::encode::displayed;
+use rototoon::render::form::Form;
 use rototoon::render::paint::multiplied;
 use rototoon::scene::{Footage, Raster, Silent};
 use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host, Settings};
@@ -56,6 +57,7 @@ fn written(text: &str, output: f64, frame: i32, scale: f64) -> Written {
             offset: 0,
             parts: None,
             scale,
+            form: Form::default(),
             output: output_path,
         };
         pipeline::render(&document, folder.path(), &job, &Silent).unwrap().remove(0)

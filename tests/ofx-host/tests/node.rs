@@ -383,7 +383,7 @@ fn ids_for_keyers_are_written_for_each_frame_of_the_composition() {
     assert_eq!(files(), [1001, 1002, 1003, 1004, 1005].map(|frame| format!("ids_{frame}.exr")));
     // The same bytes as those of the command line's function for the document's frame.
     let scene = Document::parse(&squares(), "squares").unwrap().scene;
-    let wanted = rototoon::render::id_picture(&scene, 2, None, rototoon::render::Format::Exr).unwrap();
+    let wanted = rototoon::render::id_picture(&scene, 2, None, rototoon::render::Format::EXR).unwrap();
     let facts = Facts { pixel_aspect: 1.0, chromaticities: BT709, fps: scene.footage.fps, time_code: None };
     let wanted = describe(wanted, &facts);
     assert!(std::fs::read(folder.path().join("ids_1003.exr")).unwrap() == wanted);

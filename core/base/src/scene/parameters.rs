@@ -89,7 +89,7 @@ const fn choice(id: &'static str, label: &'static str) -> Choice {
 }
 
 /// Every parameter, in the order of the stages.
-pub const ALL: [Parameter; 15] = [
+pub const ALL: [Parameter; 17] = [
     Parameter {
         id: "threads",
         label: "Threads",
@@ -189,6 +189,29 @@ pub const ALL: [Parameter; 15] = [
         help: "Whether a matte in OpenEXR also contains the complete matte of each part, as a part of the file with its name.",
         stage: Stage::Render,
         kind: Kind::Flag { default: false },
+    },
+    Parameter {
+        id: "exr",
+        label: "Numbers in OpenEXR",
+        help: "The bits of numbers in OpenEXR. Cryptomatte layers have 32 bits always.",
+        stage: Stage::Render,
+        kind: Kind::Choice { default: "float", choices: &[choice("float", "32 bits"), choice("half", "16 bits")] },
+    },
+    Parameter {
+        id: "compression",
+        label: "Compression of OpenEXR",
+        help: "How OpenEXR files are compressed. All ways keep every bit.",
+        stage: Stage::Render,
+        kind: Kind::Choice {
+            default: "zip",
+            choices: &[
+                choice("zip", "Deflate, 16 lines at a time"),
+                choice("zips", "Deflate, each line by itself"),
+                choice("piz", "Wavelets, for pictures with grain"),
+                choice("rle", "Runs of equal bytes"),
+                choice("none", "Not compressed"),
+            ],
+        },
     },
     Parameter {
         id: "line_width",

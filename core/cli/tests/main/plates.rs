@@ -118,6 +118,35 @@ fn pictures_are_drawn_around_a_gap_and_the_missing_ones_are_named() {
     good(&["render", text(&document), "-o", text(&to), "--what", "matte"]);
 }
 
+#[test]
+fn openexr_has_the_numbers_and_the_compression_that_are_asked_for() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    let channel = |name: &str, kind: u8| [name.as_bytes(), &[0, kind, 0, 0, 0]].concat();
+    let holds = |file: &[u8], wanted: &[u8]| file.windows(wanted.len()).any(|own| own == wanted);
+    let make = |what: &str, more: &[&str]| {
+        let to = cartoon.path("a.exr");
+        good(&[&["render", text(&document), "-o", text(&to), "--frames", "3", "--what", what], more].concat());
+        fs::read(&to).unwrap()
+    };
+    let packed = |file: &[u8], number: u8| {
+        holds(file, &[b"compression\0compression\0\x01\0\0\0".as_slice(), &[number]].concat())
+    };
+    let plain = make("ids", &[]);
+    assert!(holds(&plain, &channel("A", 2)) && packed(&plain, 3));
+    for (id, number) in [("none", 0), ("rle", 1), ("zips", 2), ("zip", 3), ("piz", 4)] {
+        let file = make("ids", &["--exr", "half", "--compression", id]);
+        assert!(packed(&file, number), "{id}");
+        assert!(holds(&file, &channel("A", 1)) && holds(&file, &channel("R", 1)), "{id}");
+        assert!(holds(&file, &channel("CryptoObject00.R", 2)), "{id}: ids have 32 bits");
+    }
+    let layers = make("matte", &["--layers", "on", "--exr", "half"]);
+    assert!(holds(&layers, &channel("near.A", 1)));
+    let to = cartoon.path("a.png");
+    let said = bad(&["render", text(&document), "-o", text(&to), "--frames", "3", "--exr", "half"], 2);
+    assert!(said.contains("found --exr half: expected no such option for a .png file"), "{said}");
+}
+
 #[cfg(unix)]
 #[test]
 fn a_document_behind_a_link_has_its_frames() {
