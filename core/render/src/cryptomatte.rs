@@ -13,13 +13,14 @@
 //! Source: J. Friedman, A. C. Jones: Fully automatic ID mattes with support for motion blur and transparency. SIGGRAPH
 //! posters, 2015. The Cryptomatte specification, version 1.2.
 
+use super::form;
 use super::layers::{Attribute, Channel};
 use super::visible::{Share, Visible};
 use std::collections::BTreeMap;
 use std::io::Cursor;
 
 /// Name of the layers, without their number.
-pub const LAYER: &str = "CryptoObject";
+pub const LAYER: &str = form::CRYPTOMATTE;
 /// Least number of ranks.
 const RANKS: usize = 6;
 

@@ -6,10 +6,12 @@
 //!
 //! Limits: compressions that lose something (B44, DWA, and PXR24 with 32 bits) are left out: mattes would not be exact.
 
-use super::cryptomatte;
 use exr::image::FlatSamples;
 use exr::meta::attribute::SampleType;
 use exr::prelude::{Compression, f16};
+
+/// What the names of the channels of Cryptomatte begin with.
+pub(super) const CRYPTOMATTE: &str = "CryptoObject";
 
 /// The bits of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +82,7 @@ impl Packing {
 impl Form {
     /// Whether the numbers of a channel have 16 bits.
     fn is_half(self, channel: &str) -> bool {
-        self.bits == Bits::Half && !channel.starts_with(cryptomatte::LAYER)
+        self.bits == Bits::Half && !channel.starts_with(CRYPTOMATTE)
     }
 
     /// The kind of number in a channel.

@@ -81,12 +81,15 @@ fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
     fs::remove_file(cartoon.frame(1)).unwrap();
     fs::remove_file(cartoon.frame(2)).unwrap();
     fs::write(cartoon.frame(4), "no picture").unwrap();
-    let out = cartoon.path("out.json");
-    let sheet = cartoon.path("sheet.png");
+    let [out, sheet, painted] = ["out.json", "sheet.png", "painted.json"].map(|name| cartoon.path(name));
+    let mut clicked = read(&document);
+    clicked["fills"] = json!([{"frame": 0, "regions": [{"at": [20, 20], "colour": [1, 0, 0]}]}]);
+    fs::write(&painted, clicked.to_string()).unwrap();
     for words in [
         ["track", text(&keyed), "-o", text(&out)],
         ["snap", text(&document), "-o", text(&out)],
         ["trace", text(&document), "-o", text(&out)],
+        ["fill", text(&painted), "-o", text(&out)],
         ["sheet", text(&document), "-o", text(&sheet)],
     ] {
         let said = bad(&words, 1);
@@ -96,6 +99,8 @@ fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
         assert!(lines[1].contains("frame 4: cannot read") && lines[1].contains("not a PNG"), "{said}");
     }
     assert!(!out.exists() && !sheet.exists());
+    // Frames that are not needed may be missing.
+    good(&["trace", text(&document), "-o", text(&out), "--frames", "5-6"]);
 }
 
 #[test]
