@@ -58,6 +58,8 @@ LINE = "rototoon_line"
 """For each point the number of the stroke that it was on when the drawing was traced; 0 for a point that was drawn since."""
 LOOK = "rototoon_look"
 """Checksum of a stroke's material, radius, opacity and colours when the drawing was traced."""
+MARK = "rototoon_mark"
+"""Checksum of the whole drawing when it was generated, the same on all its strokes; 0 for none. See `marks`."""
 ALONG = "rototoon_along"
 """For each point its share of that stroke's length, 0 to 1."""
 FIELDS = "rototoon_fields"
@@ -76,6 +78,7 @@ TYPES = {
     TRACK: ("INT", "CURVE"),
     LINE: ("INT", "POINT"),
     LOOK: ("INT", "CURVE"),
+    MARK: ("INT", "CURVE"),
     ALONG: ("FLOAT", "POINT"),
     FIELDS: ("INT", "CURVE"),
     TWEENED: ("BOOLEAN", "CURVE"),

@@ -2,7 +2,9 @@
 
 A snapped stroke joins the paths of a part's segments. Each of its points carries the index of its segment, so the paths can be
 read back. A stroke that was fitted or cut since has no longer all of its paths, and is not read: the control points stand for it.
-Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed.
+Frames of this layer that the artist made (with another keyframe type than "Generated") are not changed, and neither are generated
+ones that the artist changed: they become keys (`keep_edited`). Fit Strokes and Remove Hidden Lines are no such change, since the next Snap
+makes these lines anew, as ever.
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import marks
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from . import writing
@@ -57,8 +60,24 @@ def _arc(path: np.ndarray) -> np.ndarray:
     return steps / steps[-1] if steps[-1] > 0 else np.linspace(0, 1, len(path)) if len(path) > 1 else steps
 
 
+def keep_edited(ob, frame: int | None = None) -> list[int]:
+    """Makes snapped drawings that the artist changed the artist's, so that they are not written again: all, or that on `frame`.
+
+    Returns their frames.
+    """
+    layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if layer is None:
+        return []
+    edited = [each for each in marks.changed_frames(ob.data, layer.name) if frame in (None, each)]
+    gp.set_keyframe_type(layer, dict.fromkeys(edited, gp.KEYFRAME))
+    return edited
+
+
 def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, mapper: Mapper) -> int:
-    """Writes snapped paths. `curves` are pixels by part number and scene frame. Returns the number of strokes."""
+    """Writes snapped paths. `curves` are pixels by part number and scene frame. Returns the number of strokes.
+
+    Drawings that the artist changed are written too, unless `keep_edited` made them the artist's.
+    """
     layer = gp.layer(ob, ob.rototoon.snapped_layer)
     own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
     old = {frame for frame in gp.drawings(layer) if frame not in own}
@@ -81,6 +100,7 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
         if not gp.has_made(drawings[frame][0], rows):
             gp.replace_made(drawings[frame][0], rows)
         written += len(strokes)
+    marks.note(ob.data, layer.name, frames)
     return written
 
 

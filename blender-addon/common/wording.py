@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 
 def counted(number: int, noun: str) -> str:
     """A number with its noun: 1 frame, 2 frames."""
@@ -18,3 +20,18 @@ def listed(frames: list[int]) -> str:
             spans.append([frame, frame])
     texts = [str(a) if a == b else f"{a} {'and' if b == a + 1 else 'to'} {b}" for a, b in spans]
     return texts[0] if len(texts) == 1 else ", ".join(texts[:-1]) + f" and {texts[-1]}"
+
+
+def stayed(noun: str, frames: Iterable[int]) -> str:
+    """That drawings stay because the artist had changed them; empty without any."""
+    frames = sorted(set(frames))
+    if not frames:
+        return ""
+    if len(frames) == 1:
+        return f"the {noun} that you had changed on frame {frames[0]} stays, as a key"
+    return f"the {noun}s that you had changed on frames {listed(frames)} stay, as keys"
+
+
+def joined(*texts: str) -> str:
+    """Texts with commas between; empty ones are left out."""
+    return ", ".join(filter(None, texts))

@@ -61,6 +61,8 @@ class Taken:
     """By part the frames of results that were not taken, since the artist changed something."""
     left: str = ""
     """Layers that were left as they were."""
+    edited: list[int] = field(default_factory=list)
+    """Frames of snapped drawings that the artist had changed: they stay, and are keys now."""
 
 
 def results_of(folder: str, path: str) -> list[Result]:
@@ -146,7 +148,7 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     yield from _write(ob, reading, tracks, frames)
     _note_ends(ob, sent, now)
     left = tracking.contour_layers(ob)
-    snapped = _write_curves(ob, reading, sent, frames)
+    snapped = _write_curves(ob, reading, sent, frames, taken)
     taken.left = "; ".join(filter(None, (guard.left_out(left, hidden=True), snapped)))
     sessions.drop(ob)
     ob.data.update_tag()
@@ -256,7 +258,7 @@ def _note_ends(ob, sent: Mapping[str, Any], now: Mapping[str, Any]) -> None:
             ends.put(item, [(int(frame), ends.LOST) for frame in entry.get("wants_key", [])])
 
 
-def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[int, set[int]]) -> str:
+def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[int, set[int]], done: Taken) -> str:
     """Writes snapped lines of contours that were taken. Returns why none were."""
     offset = ob.rototoon.frame_offset
     curves = {}
@@ -270,5 +272,6 @@ def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[
     layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is not None and guard.closed(layer):
         return guard.left_out([layer])
+    done.edited = snapping.keep_edited(ob)
     snapping.write(ob, snapping.read(ob) | curves, reading.found, reading.mapper)
     return ""

@@ -1,7 +1,7 @@
 """The drawings of a layer with lines: the artist's, and traced ones.
 
 A drawing is traced if its keyframe type is "Generated" and nobody has changed it since. Whatever the artist does there (redraw,
-move, delete, another number) makes it the artist's: it is never written again, and its strokes are followed. In-betweens are neither:
+move, delete, another look, another number) makes it the artist's: it is never written again, and its strokes are followed. In-betweens are neither:
 they stay as they are, and are not followed.
 """
 
@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import marks
 from ..blender import strokes as st
 from . import records
 
@@ -69,30 +70,31 @@ def sum_of(content: st.Content) -> int:
 def read(ob, names: Iterable[str], wanted: Iterable[int] | None = ()) -> list[Layer]:
     """Sorts the drawings of layers. `wanted` are the frames of generated drawings whose content is needed, `None` for all."""
     kept = records.read(ob.data)
-    wanted = None if wanted is None else set(wanted)
+    wanted, slots = None if wanted is None else set(wanted), marks.Slots(ob.data)
     with gp.copied(ob.data) as data:
-        return [_layer(name, gp.find_layer_of(data, name), kept.get(name, records.Layer()).sums, wanted) for name in names]
+        return [_layer(name, gp.find_layer_of(data, name), kept.get(name, records.Layer()), wanted, slots) for name in names]
 
 
-def _layer(name: str, layer, sums: dict[int, int], wanted: set[int] | None) -> Layer:
+def _layer(name: str, layer, record: records.Layer, wanted: set[int] | None, slots: marks.Slots) -> Layer:
     found = Layer(name)
     if layer is None:
         return found
 
-    def read_one(handle, frame: int) -> st.Content:
-        return st.read(handle) if wanted is None or frame in wanted else EMPTY
+    def asked(content: st.Content, frame: int) -> st.Content:
+        return content if wanted is None or frame in wanted else EMPTY
 
     for frame, (handle, kind) in gp.drawings(layer).items():
         strokes = len(gp.offsets(handle)) - 1
         tracks = gp.value(handle, gp.TRACK, strokes)
         found.highest[frame] = int(tracks.max(initial=0))
-        if kind == gp.GENERATED and _is_traced(handle, sums.get(frame)):
-            found.made[frame] = read_one(handle, frame)
-        elif kind == gp.GENERATED and strokes and gp.value(handle, gp.TWEENED, strokes).all():
-            found.other[frame] = read_one(handle, frame)
+        content = st.read(handle)
+        if kind == gp.GENERATED and _is_traced(content, frame, record, slots):
+            found.made[frame] = asked(content, frame)
+        elif kind == gp.GENERATED and strokes and content.strokes(gp.TWEENED).all():
+            found.other[frame] = asked(content, frame)
         else:
             if strokes:
-                found.keys[frame] = st.read(handle)
+                found.keys[frame] = content
             else:
                 found.blank.add(frame)
             if kind == gp.GENERATED:
@@ -100,15 +102,18 @@ def _layer(name: str, layer, sums: dict[int, int], wanted: set[int] | None) -> L
     return found
 
 
-def _is_traced(handle, known: int | None) -> bool:
+def _is_traced(content: st.Content, frame: int, record: records.Layer, slots: marks.Slots) -> bool:
     """Whether a generated drawing is as tracing wrote it. Without a checksum, as on a renamed layer, the marks of the strokes tell."""
-    starts = gp.offsets(handle)
-    strokes, points = len(starts) - 1, gp.positions(handle, int(starts[-1]))
+    known = record.sums.get(frame)
     if known is None:
-        made = gp.value(handle, gp.MADE, strokes) & ~gp.value(handle, gp.TWEENED, strokes)
-        traced = gp.get(handle, gp.TRACKED, len(points))
-        return bool(strokes and made.all() and traced is not None and np.array_equal(traced, points))
-    return records.checksum(points, gp.value(handle, gp.TRACK, strokes), np.diff(starts)) == known
+        made = content.strokes(gp.MADE) & ~content.strokes(gp.TWEENED)
+        traced = content.point.get(gp.TRACKED)
+        if not (len(made) and made.all() and traced is not None and np.array_equal(traced, content.point["position"])):
+            return False
+    elif known != sum_of(content):
+        return False
+    # An older version may have traced it anew: then the mark is of an earlier drawing, and the record says so.
+    return not ((known is None or frame in record.marked) and marks.untouched(content, slots) is False)
 
 
 def keep(ob, layer: Layer) -> None:
@@ -143,27 +148,59 @@ def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
 
 
 LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id", "hide_stroke")
-"""What of a stroke counts as its look."""
+"""What of a stroke counted as its look before drawings had marks."""
+_FORM = {"position", "curve_type", "handle_left", "handle_right", "handle_type_left", "handle_type_right", "nurbs_order", "nurbs_weight", "knots_mode", "resolution"}
+"""What is the form of a stroke and no look."""
 
 
-def look_sums(content: st.Content) -> np.ndarray:
-    """Checksum of each stroke's look: int32."""
+def further_looks(content: st.Content) -> list[str]:
+    """The other attributes of a drawing that are the look of its strokes: caps, softness, textures, and the artist's own."""
+    names = {*content.point, *content.curve} - {*LOOKS, *_FORM}
+    return sorted(name for name in names if not name.startswith("rototoon_"))
+
+
+def look_sums(content: st.Content, further: bool = True) -> np.ndarray:
+    """Checksum of each stroke's look: int32. Without `further` it is that of versions without marks, which knew `LOOKS` alone. No stroke
+    has the same one both ways."""
     starts, points = content.starts, len(content.point["position"])
     of_points = [content.point.get(name) for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     of_points = [gp.blank(name, points) if each is None else each for name, each in zip(names, of_points)]
     of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE" and name != "hide_stroke"]
     hidden = content.strokes("hide_stroke")
+    more = [_uncommon(content, name) for name in further_looks(content)] if further else []
     found = np.zeros(len(content.sizes), np.int64)
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
-        total = 0
+        total = int(further)
         for each in of_points:
             total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
         for each in of_strokes:
             total = zlib.crc32(np.ascontiguousarray(each[i]), total)
-        # Strokes whose line is shown have the sums of earlier versions.
-        found[i] = zlib.crc32(b"hidden", total) if hidden[i] else total
+        # Strokes whose line is shown have the sums of versions that did not know of lines that are not.
+        total = zlib.crc32(b"hidden", total) if hidden[i] else total
+        for name, values, of_curve, uncommon in more:
+            if uncommon[i]:
+                total = zlib.crc32(np.ascontiguousarray(values[i] if of_curve else values[a:b]), zlib.crc32(name, total))
+        found[i] = total
     return found.astype(np.uint32).view(np.int32)
+
+
+def has_looks(content: st.Content) -> np.ndarray:
+    """For each stroke: whether its look is the one that was noted. What an earlier version noted counts as that version saw it."""
+    known = content.strokes(gp.LOOK)
+    same = look_sums(content) == known
+    return same if same.all() else same | (look_sums(content, further=False) == known)
+
+
+def _uncommon(content: st.Content, name: str) -> tuple[bytes, np.ndarray, bool, np.ndarray]:
+    """An attribute: its name, its values, whether they are of strokes, and which strokes have another value than the default."""
+    of_curve = name in content.curve
+    values = content.curve[name] if of_curve else content.point[name]
+    other = (values != gp.DEFAULTS.get(name, 0)).reshape(len(values), -1).any(1)
+    if not of_curve:
+        before = np.concatenate([[0], np.cumsum(other)])
+        other = before[content.starts[1:]] > before[content.starts[:-1]]
+    return name.encode(), values, of_curve, other
 
 
 def shares(points: np.ndarray) -> np.ndarray:

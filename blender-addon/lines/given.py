@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, line_materials
+from ..blender import guard, line_materials, marks
 from ..blender.placement import Mapper
 from ..common import jobs
 from ..tween import keys as ks
@@ -183,6 +183,7 @@ def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> N
             gp.make_frames(target, inside, gp.KEYFRAME)
             gp.set_keyframe_type(target, dict.fromkeys(inside, gp.GENERATED))
             drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes, inks) for frame, strokes in inside.items()}
+            marks.note(ob.data, target.name, inside)
     done.between = sum(map(len, drawn.values()))
     done.left = len(film.between.keys() - set(there.keys)) - done.between
     if drawn:
@@ -209,6 +210,6 @@ def _note(ob, target, record: tween_records.Layer, spans: dict[tuple[int, int], 
     for call in plan.calls:
         for k in call.spans:
             span = call.sheet.frames[k], call.sheet.frames[k + 1]
-            record.spans[span[0]] = tween_records.Span(span[1], call.sheet.digests[k], spans[span], drawn[span])
+            record.spans[span[0]] = tween_records.Span(span[1], call.sheet.digests[k], spans[span], drawn[span], marked=True)
     numbers = [gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1) for handle, _ in gp.drawings(target).values()]
     record.next_track = max(int(each.max(initial=0)) for each in numbers) + 1

@@ -2,7 +2,9 @@
 
 For each layer, as one JSON text on the Grease Pencil data:
 
-- the checksum of each traced drawing. It shows whether the artist has changed the drawing since.
+- the checksum of the points and numbers of each traced drawing. It shows whether the artist has moved or numbered strokes since, or put another
+  drawing there. Everything else that an artist may change shows in the drawing's mark (see `blender.marks`).
+- which traced drawings have such a mark. Versions without marks do not write it, so the mark of a drawing that one of them traced anew does not count.
 - the numbers of the strokes of each drawing that was traced or followed. They show which strokes the artist has deleted since.
 """
 
@@ -24,6 +26,7 @@ class Layer:
 
     sums: dict[int, int] = field(default_factory=dict)
     numbers: dict[int, list[int]] = field(default_factory=dict)
+    marked: set[int] = field(default_factory=set)
 
 
 Records = dict[str, Layer]
@@ -40,19 +43,24 @@ def read(data) -> Records:
 
 def _layer(kept) -> Layer:
     sums = {int(frame): int(total) for frame, total in kept["sums"].items()}
-    return Layer(sums, {int(frame): _expanded(text) for frame, text in kept["numbers"].items()})
+    numbers = {int(frame): _expanded(text) for frame, text in kept["numbers"].items()}
+    return Layer(sums, numbers, set(_expanded(kept.get("marked", ""))))
 
 
 def write(data, records: Records) -> None:
     """Writes the records into a data-block. Without any, the text is removed."""
-    kept = {name: each for name, each in records.items() if each.sums or each.numbers}
+    kept = {name: each for name, each in records.items() if each.sums or each.numbers or each.marked}
     if not kept:
         if PROPERTY in data:
             del data[PROPERTY]
         return
     data[PROPERTY] = json.dumps(
         {
-            name: {"sums": each.sums, "numbers": {frame: _ranges(numbers) for frame, numbers in each.numbers.items()}}
+            name: {
+                "sums": each.sums,
+                "numbers": {frame: _ranges(numbers) for frame, numbers in each.numbers.items()},
+                "marked": _ranges(each.marked),
+            }
             for name, each in kept.items()
         },
         separators=(",", ":"),

@@ -66,7 +66,7 @@ def found(content: st.Content, before: Sequence[int], mapping, chosen: np.ndarra
     if lines is None:
         return Edit(content, mapping, [], set(), set())
     starts, tracks = content.starts, content.strokes(gp.TRACK)
-    looks, known = dr.look_sums(content), content.strokes(gp.LOOK)
+    same = dr.has_looks(content)
     moved = (content.point[gp.TRACKED] != content.point["position"]).any(1)
     twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
     edited, touched = [], set()
@@ -76,7 +76,7 @@ def found(content: st.Content, before: Sequence[int], mapping, chosen: np.ndarra
             continue
         along = content.point[gp.ALONG][a:b]
         cut = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
-        if cut or moved[a:b].any() or (lines[a:b] == 0).any() or looks[i] != known[i]:
+        if cut or moved[a:b].any() or (lines[a:b] == 0).any() or not same[i]:
             edited.append(i)
             touched |= own
     there = set(lines.tolist()) | set(tracks.tolist())
@@ -284,15 +284,28 @@ def _look_like(made: st.Content, source: st.Content, i: int) -> None:
     """Gives a stroke the look of stroke `i` of another drawing, by the share of the length."""
     a, b = source.starts[i : i + 2]
     where, known = dr.shares(made.point["position"]), dr.shares(source.point["position"][a:b])
-    for name in dr.LOOKS:
-        if gp.TYPES[name][1] == "CURVE":
-            if name in source.curve:
-                made.set_strokes(name, source.curve[name][i : i + 1].copy())
+    for name in (*dr.LOOKS, *dr.further_looks(source)):
+        if name == "cyclic":
+            # That is shape, too: whoever reshapes the stroke sets it.
+            continue
+        if name in source.curve:
+            _have(made, source, name)
+            made.curve[name] = source.curve[name][i : i + 1].copy()
         elif name in source.point:
-            own = source.point[name][a:b].reshape(b - a, -1).astype(np.float64)
-            values = np.stack([np.interp(where, known, own[:, k]) for k in range(own.shape[1])], 1)
-            made.kinds.setdefault(name, gp.TYPES[name][0])
-            made.point[name] = values.reshape((len(where), *source.point[name].shape[1:])).astype(source.point[name].dtype)
+            own = source.point[name][a:b]
+            _have(made, source, name)
+            if own.dtype.kind != "f":
+                made.point[name] = own[np.abs(where[:, None] - known[None]).argmin(1)]
+                continue
+            columns = own.reshape(b - a, -1).astype(np.float64)
+            values = np.stack([np.interp(where, known, columns[:, k]) for k in range(columns.shape[1])], 1)
+            made.point[name] = values.reshape((len(where), *own.shape[1:])).astype(own.dtype)
+
+
+def _have(made: st.Content, source: st.Content, name: str) -> None:
+    """Gives a stroke the data type of an attribute that it does not have yet."""
+    if name not in made.kinds:
+        made.kinds[name] = source.kinds[name] if name in source.kinds else gp.TYPES[name][0]
 
 
 def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]]) -> st.Content:

@@ -15,7 +15,7 @@ from rototoon import Session
 from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import guard, marks
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
@@ -245,9 +245,12 @@ def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, recor
         for stroke in strokes:
             done.confidence.setdefault((layer.name, stroke.number), {})[frame] = stroke.confidence
         yield count / len(placed)
+    marks.note(ob.data, layer.name, placed)
+    record.marked |= placed.keys()
     done.breaks |= _breaks(placed)
     for frame in [frame for frame in record.sums if frame in layer.kept or frame not in handles]:
         del record.sums[frame]
+    record.marked &= record.sums.keys()
     for frame in [frame for frame in record.numbers if frame not in handles]:
         del record.numbers[frame]
 

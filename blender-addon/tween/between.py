@@ -13,6 +13,7 @@ import numpy as np
 from rototoon import tween
 
 from ..blender import grease_pencil as gp
+from ..blender import marks
 from ..blender import strokes as st
 from . import keys as ks
 from . import records
@@ -313,6 +314,7 @@ def write(ob, block: Block, tracks: np.ndarray) -> dict[int, int]:
         gp.points_changed(handle)
         sums[number] = records.checksum(block.positions[k])
     gp.set_keyframe_type(layer, dict.fromkeys(block.frames, gp.GENERATED))
+    marks.note(ob.data, block.layer, block.frames)
     return sums
 
 

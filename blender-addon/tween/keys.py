@@ -9,10 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import marks
 from ..blender import strokes as st
 from . import records
 
-OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE}
+OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE, gp.MARK}
 """Attributes that do not affect the look of a stroke."""
 
 
@@ -44,28 +45,33 @@ def is_tweened(handle, kind: str) -> bool:
 
 def frames_of(layer, record: records.Layer) -> Frames:
     """Sorts the frames of a layer into keys and in-betweens."""
-    found = Frames([], [])
-    sums = {frame: total for span in record.spans.values() for frame, total in span.sums.items()}
-    for number, (handle, kind) in gp.drawings(layer).items():
-        if not is_tweened(handle, kind):
-            found.keys.append(number)
-        elif number in sums and sums[number] != _sum(handle):
-            found.keys.append(number)
-            found.edited.append(number)
-        else:
-            found.made.append(number)
-            continue
-        if len(gp.offsets(handle)) < 2:
-            found.blank.add(number)
-            if kind == gp.GENERATED:
-                found.ends.add(number)
+    found, slots = Frames([], []), marks.Slots(layer.id_data)
+    with gp.copied(layer.id_data) as data:
+        for number, (handle, kind) in gp.drawings(gp.find_layer_of(data, layer.name)).items():
+            if not is_tweened(handle, kind):
+                found.keys.append(number)
+            elif _is_edited(st.read(handle), number, record, slots):
+                found.keys.append(number)
+                found.edited.append(number)
+            else:
+                found.made.append(number)
+                continue
+            if len(gp.offsets(handle)) < 2:
+                found.blank.add(number)
+                if kind == gp.GENERATED:
+                    found.ends.add(number)
     found.keys.sort()
     found.made.sort()
     return found
 
 
-def _sum(handle) -> int:
-    return records.checksum(gp.positions(handle, int(gp.offsets(handle)[-1])))
+def _is_edited(content: st.Content, number: int, record: records.Layer, slots: marks.Slots) -> bool:
+    """Whether the artist has changed an in-between, or moved another one to its frame."""
+    span = next((span for span in record.spans.values() if number in span.sums), None)
+    if span is not None and span.sums[number] != records.checksum(content.point["position"]):
+        return True
+    # An older version may have drawn it anew: then the mark is of an earlier drawing, and the record says so.
+    return (span is None or span.marked) and marks.untouched(content, slots) is False
 
 
 def digest(content: st.Content) -> bytes:

@@ -2,7 +2,8 @@
 
 The records are one JSON text on the Grease Pencil data. For each layer it has the next free number of a stroke, and its spans by the
 frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and a
-checksum of each drawing. The checksum shows whether the artist has changed the drawing since.
+checksum of the points of each drawing. It shows whether the artist has moved points since, or put another drawing there. Everything else that
+an artist may change shows in the drawing's mark (see `blender.marks`).
 """
 
 from __future__ import annotations
@@ -27,7 +28,9 @@ class Span:
     digest: str
     choices: Choices
     sums: dict[int, int] = field(default_factory=dict)
-    """Checksums of the drawings by frame."""
+    """Checksums of the drawings' points by frame."""
+    marked: bool = False
+    """Whether the drawings have marks (see `blender.marks`). Versions without marks do not write it."""
 
 
 @dataclass
@@ -61,6 +64,7 @@ def _layer(kept: dict[str, Any]) -> Layer:
             str(each["digest"]),
             Choices.of(each["choices"]),
             {int(frame): int(total) for frame, total in each["sums"].items()},
+            bool(each.get("marked", False)),
         )
         for first, each in kept["spans"].items()
     }
@@ -78,7 +82,7 @@ def write(data, records: dict[str, Layer]) -> None:
 
 def _kept(layer: Layer) -> dict[str, Any]:
     spans = {
-        str(first): {"last": s.last, "digest": s.digest, "choices": s.choices.kept(), "sums": s.sums}
+        str(first): {"last": s.last, "digest": s.digest, "choices": s.choices.kept(), "sums": s.sums, "marked": s.marked}
         for first, s in sorted(layer.spans.items())
     }
     return {"next": layer.next_track, "spans": spans}

@@ -13,7 +13,7 @@ import numpy as np
 from rototoon import tween
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy
+from ..blender import guard, hierarchy, marks
 from ..blender.errors import Problem
 from . import between, captured, layer_pegs, records, sheets, surroundings
 from . import keys as ks
@@ -229,7 +229,7 @@ def _note(record: records.Layer, block: between.Block, sheet: sheets.Sheet, span
             # A key now divides this span. The rest of the span is drawn again at the next update.
             known.sums = kept
             known.digest = ""
-    record.spans[block.first] = records.Span(block.last, sheet.digests[span], sheet.wanted[span], sums)
+    record.spans[block.first] = records.Span(block.last, sheet.digests[span], sheet.wanted[span], sums, marked=True)
 
 
 def collect_pairs(call: Call, into: dict[str, dict[int, list[tuple[int, int]]]]) -> None:
@@ -282,26 +282,49 @@ def _tracks(block: between.Block, numbers: dict[int, np.ndarray]) -> np.ndarray:
     return np.array([(later if own else earlier)[i] for own, i in zip(from_later, stroke)], np.int32)
 
 
-def clear(ob, layers: Iterable, first: int | None = None, last: int | None = None) -> int:
-    """Removes in-betweens and their records: all, or those from frame `first` to `last`. Returns their number."""
-    kept = records.read(ob.data)
-    removed = 0
+@dataclass
+class Cleared:
+    """What `clear` has done."""
+
+    removed: int = 0
+    """Number of in-betweens that were removed."""
+    kept: set[int] = field(default_factory=set)
+    """Frames of in-betweens that the artist had changed: they are keys now."""
+
+
+def clear(ob, layers: Iterable, around: int | None = None) -> Cleared:
+    """Removes in-betweens and their records: all, or those between the two keys around the frame `around`. What the artist changed stays."""
+    kept, done = records.read(ob.data), Cleared()
     for layer in layers:
-        inside = [
-            number
-            for number, (handle, kind) in gp.drawings(layer).items()
-            if ks.is_tweened(handle, kind) and (first is None or first <= number <= last)
-        ]
+        record = kept.get(layer.name, records.Layer())
+        found = ks.frames_of(layer, record)
+        span = (-np.inf, np.inf) if around is None else ks.around(found.keys, around)
+        if span is None:
+            continue
+        inside = [number for number in found.made if span[0] <= number <= span[1]]
+        edited = [number for number in found.edited if span[0] <= number <= span[1]]
+        adopt(layer, edited)
         gp.remove_frames(layer, inside)
-        removed += len(inside)
-        record = kept.get(layer.name)
-        if record is not None:
-            gone = set(inside)
-            for start in [s for s, span in record.spans.items() if first is None or gone & set(span.sums)]:
-                del record.spans[start]
+        done.removed += len(inside)
+        done.kept |= set(edited)
+        _forget(record, found.keys, span)
     records.write(ob.data, kept)
     ob.data.update_tag()
-    return removed
+    return done
+
+
+def _forget(record: records.Layer, keys: list[int], cleared: tuple[float, float]) -> None:
+    """Removes the records of in-betweens from one frame to another. What is left of a span is drawn again at the next update."""
+    first, last = cleared
+    for start, known in list(record.spans.items()):
+        left = {frame: total for frame, total in known.sums.items() if not first <= frame <= last}
+        if len(left) == len(known.sums) and left:
+            continue
+        del record.spans[start]
+        for a, b in zip(keys, keys[1:]):
+            own = {frame: total for frame, total in left.items() if a < frame < b}
+            if own:
+                record.spans[a] = records.Span(b, "", known.choices, own, known.marked)
 
 
 def nothing_to_draw(result: Plan) -> Problem:

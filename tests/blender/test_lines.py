@@ -117,7 +117,7 @@ def test_clear_leaves_the_artists_drawings(addon, film, fake):
     gp = addon("blender.grease_pencil")
     gp.remove_strokes(gp.drawings(gp.find_layer(film, "Lines"))[4][0], [1])
     bpy.ops.rototoon.clear_lines()
-    assert said(addon).text == "10 traced drawings removed"
+    assert said(addon).text == "10 traced drawings removed, the traced drawing that you had changed on frame 4 stays, as a key"
     assert list(kinds(addon, film, "Ink")) == [1] and list(kinds(addon, film, "Lines")) == [4]
     assert kinds(addon, film, "Lines") == {4: "KEYFRAME"} and len(ls.strokes(addon, film, "Lines", 4)) == 1
     assert not bpy.ops.rototoon.clear_lines.poll()

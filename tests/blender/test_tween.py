@@ -120,18 +120,22 @@ def test_what_strokes_carry_follows(addon):
     assert found.curve["fill_id"].tolist() == [0, 1, 0] and found.point["mine"].tolist() == list(range(n))
 
 
+SEEN = "rototoon_seen"
+"""An attribute whose name says that it is not the artist's."""
+
+
 def mark(addon, ob, layer="Lines"):
     """Marks all drawings between keys: what is drawn again loses the mark."""
     for frame, kind in frames(addon, ob, layer).items():
         if kind == "GENERATED":
             handle = drawing(addon, ob, layer, frame)
             count = len(content(addon, ob, layer, frame).sizes)
-            handle.attributes.new("mark", "INT", "CURVE").data.foreach_set("value", np.ones(count, np.int32))
+            handle.attributes.new(SEEN, "INT", "CURVE").data.foreach_set("value", np.ones(count, np.int32))
 
 
 def drawn_again(addon, ob, layer="Lines"):
     kinds = frames(addon, ob, layer)
-    return [n for n in kinds if kinds[n] == "GENERATED" and "mark" not in content(addon, ob, layer, n).curve]
+    return [n for n in kinds if kinds[n] == "GENERATED" and SEEN not in content(addon, ob, layer, n).curve]
 
 
 def move(addon, ob, frame, index=3, by=0.05, layer="Lines"):

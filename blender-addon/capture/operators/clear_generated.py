@@ -5,8 +5,8 @@ import bpy
 from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...common.operators import Guarded
-from ...common.wording import counted
-from .. import writing
+from ...common.wording import counted, joined, stayed
+from .. import snapping, writing
 from ..polls import WithGenerated
 
 
@@ -22,7 +22,7 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
         items=(("ALL", "All", "All frames"), ("CURRENT", "Current", "The current frame")),
     )
     corrected: bpy.props.BoolProperty(
-        name="Corrected Frames Too", description="Remove frames with your corrections too", default=False
+        name="Corrected Frames Too", description="Remove frames with your corrections too, and snapped drawings that you have changed", default=False
     )
     snapped: bpy.props.BoolProperty(name="Snapped Lines", description="Clear the snapped layer too", default=True)
 
@@ -34,10 +34,12 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
             layers.append((snapped, False))
         every = [layer for layer, _ in layers if len(layer.frames)]
         guard.need_some(every)
-        cleared, kept = 0, 0
+        cleared, kept, edited = 0, 0, []
         for layer, keep in layers:
             if guard.closed(layer):
                 continue
+            if layer == snapped and not self.corrected:
+                edited = snapping.keep_edited(ob, None if self.frames == "ALL" else current)
             drawings = gp.drawings(layer)
             frames = [f for f in drawings if self.frames == "ALL" or f == current]
             if keep:
@@ -45,7 +47,8 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
             cleared += writing.clear(layer, frames, keep_corrected=keep)
         ob.data.update_tag()
         self.warn(guard.left_out(every))
-        return f"{counted(cleared, 'generated drawing')} removed" + (f", {kept} with corrections kept" if kept else "")
+        said = f"{counted(cleared, 'generated drawing')} removed"
+        return joined(said, f"{kept} with corrections kept" if kept else "", stayed("snapped drawing", edited))
 
 
 CLASSES = (ROTOTOON_OT_clear_generated,)

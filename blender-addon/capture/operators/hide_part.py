@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, marks
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from ...common.wording import listed
@@ -89,8 +89,12 @@ def _is_corrected(found: contours.Contours, part: contours.Part, frame: int) -> 
 
 def _remove(layer, number: int, frames: list[int]) -> None:
     """Removes the generated strokes of a part. A drawing that is empty then stays, so that no earlier one shows there."""
+    data, name = layer.id_data, layer.name
+    # What Rototoon removes is no change by the artist.
+    untouched = marks.untouched_frames(data, name) & set(frames)
     for handle, own in _made(layer, number, frames):
         gp.remove_strokes(handle, np.flatnonzero(own).tolist())
+    marks.note(data, name, untouched)
 
 
 def _made(layer, number: int, frames: list[int]) -> list[tuple]:

@@ -8,7 +8,7 @@ from ...blender import guard, preferences
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnContours
-from ...common.wording import counted
+from ...common.wording import counted, joined, stayed
 from .. import document, identity, sessions, snapping
 
 
@@ -17,7 +17,7 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
     bl_label = "Snap to Ink"
     bl_description = (
         "Lay the tracked contours along the drawn lines, as strokes on a layer of their own. "
-        "Thickness, fill and material follow your keys"
+        "Thickness, fill and material follow your keys. Snapped drawings that you have changed become keys and stay"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -42,9 +42,11 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
             raise Problem("The contours changed while they were snapped, so the result was dropped: press Snap again")
         identity.write(self._ob, reading.found, reading.decisions)
         curves = self._curves(reading)
+        edited = snapping.keep_edited(self._ob)
         strokes = snapping.write(self._ob, curves, reading.found, reading.mapper)
         self._ob.data.update_tag()
-        return f'{counted(strokes, "line")} on the layer "{self._ob.rototoon.snapped_layer}"'
+        said = f'{counted(strokes, "line")} on the layer "{self._ob.rototoon.snapped_layer}"'
+        return joined(said, stayed("drawing", edited))
 
     def _curves(self, reading):
         offset, curves = self._ob.rototoon.frame_offset, {}

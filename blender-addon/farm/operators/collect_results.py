@@ -10,7 +10,7 @@ from ...blender import grease_pencil as gp
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
-from ...common.wording import counted, listed
+from ...common.wording import counted, listed, stayed
 from ...lines import doubts
 from ...lines import tracing as lines_tracing
 from ...lines.operators.tracing_base import keys_now, where_to_look
@@ -107,6 +107,7 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
             said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')}"]
         if said:
             self.warn(f'"{name}" was changed since it was sent, and stays as it is: {", ".join(said)}; press Track')
+        self.warn(f'"{name}": {stayed("snapped drawing", taken.edited)}' if taken.edited else "")
         self.warn(taken.left)
 
 

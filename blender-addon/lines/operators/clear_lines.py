@@ -5,7 +5,7 @@ import bpy
 from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...common.operators import Guarded, OnDrawing
-from ...common.wording import counted
+from ...common.wording import counted, joined, stayed
 from .. import drawings as dr
 from .. import records
 
@@ -30,15 +30,16 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
         wanted = [layer for layer in dr.layers(ob) if dr.is_lines(layer)]
         guard.need_some(wanted)
         self.warn(guard.left_out(wanted))
-        kept, removed = records.read(ob.data), 0
+        kept, removed, edited = records.read(ob.data), 0, set()
         for found in dr.read(ob, [layer.name for layer in guard.open_layers(wanted)]):
             dr.keep(ob, found)
             gp.remove_frames(gp.find_layer(ob, found.name), sorted(found.made))
             removed += len(found.made)
+            edited |= found.edited
             kept.pop(found.name, None)
         records.write(ob.data, kept)
         ob.data.update_tag()
-        return f"{counted(removed, 'traced drawing')} removed"
+        return joined(f"{counted(removed, 'traced drawing')} removed", stayed("traced drawing", edited))
 
 
 CLASSES = (ROTOTOON_OT_clear_lines,)

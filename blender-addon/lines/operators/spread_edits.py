@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, placement
+from ...blender import guard, marks, placement
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -96,8 +96,13 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         guard.need_open(gp.find_layer(self._ob, name) for name, *_ in self._work_on)
         kept = records.read(self._ob.data)
         for count, (name, frame, content) in enumerate(self._done, 1):
-            st.write(gp.drawings(gp.find_layer(self._ob, name))[frame][0], content)
-            kept.setdefault(name, records.Layer()).numbers[frame] = content.strokes(gp.TRACK).tolist()
+            (handle, kind), record = gp.drawings(gp.find_layer(self._ob, name))[frame], kept.setdefault(name, records.Layer())
+            st.write(handle, content)
+            if kind == gp.GENERATED:
+                # An edit of looks leaves the points, by which the drawing of a version without marks counts as traced.
+                marks.make_the_artists(handle)
+                record.marked.add(frame)
+            record.numbers[frame] = content.strokes(gp.TRACK).tolist()
             yield count / len(self._done)
         records.write(self._ob.data, kept)
         self._ob.data.update_tag()

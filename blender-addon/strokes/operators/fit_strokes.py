@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, projection
+from ...blender import guard, marks, projection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -112,8 +112,9 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
-        for name, number, fitted in self._done:
-            st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
+        with marks.kept(self._ob):
+            for name, number, fitted in self._done:
+                st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
         self._ob.data.update_tag()
         strokes = sum(fitted.fitted for *_, fitted in self._done)
         if not strokes:

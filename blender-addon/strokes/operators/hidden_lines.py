@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, marks
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
@@ -87,7 +87,8 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
-        drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+        with marks.kept(self._ob):
+            drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
         return f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}" if drawings else "Nothing is hidden"
 

@@ -6,8 +6,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
-from ...common.wording import counted
-from .. import keys as ks
+from ...common.wording import counted, joined, stayed
 from .. import tweening
 from .tweening_base import LAYERS
 
@@ -15,7 +14,7 @@ from .tweening_base import LAYERS
 class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.clear_in_betweens"
     bl_label = "Clear In-betweens"
-    bl_description = "Remove the in-betweens. Your own drawings stay"
+    bl_description = "Remove the in-betweens. Your own drawings stay, and so do in-betweens that you have changed: they become keys"
     bl_options = {"REGISTER", "UNDO"}
 
     frames: bpy.props.EnumProperty(
@@ -36,18 +35,12 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
         return why or ("" if any(gp.has(handle, gp.TWEENED) for handle in handles) else "There are no in-betweens")
 
     def run(self, context) -> str:
-        ob = context.object
-        removed = 0
-        for layer in st.editable_layers(ob, self.layers == "ACTIVE"):
-            span = (None, None)
-            if self.frames == "CURRENT":
-                keys = [n for n, found in gp.drawings(layer).items() if not ks.is_tweened(*found)]
-                span = ks.around(keys, context.scene.frame_current)
-                if span is None:
-                    continue
-            removed += tweening.clear(ob, [layer], *span)
-        self.warn(guard.left_out(st.drawn_layers(ob, self.layers == "ACTIVE")))
-        return f"{counted(removed, 'in-between')} removed" if removed else "There are no in-betweens"
+        ob, active = context.object, self.layers == "ACTIVE"
+        around = context.scene.frame_current if self.frames == "CURRENT" else None
+        done = tweening.clear(ob, st.editable_layers(ob, active), around)
+        self.warn(guard.left_out(st.drawn_layers(ob, active)))
+        said = f"{counted(done.removed, 'in-between')} removed" if done.removed or done.kept else "There are no in-betweens"
+        return joined(said, stayed("in-between", done.kept))
 
 
 CLASSES = (ROTOTOON_OT_clear_in_betweens,)
