@@ -31,6 +31,8 @@ import json
 import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
+from itertools import islice, permutations
 
 import numpy as np
 
@@ -41,6 +43,8 @@ PROPERTY = "rototoon_slots"
 """The names of the material slots at each marking, as one JSON text on the Grease Pencil data."""
 THE_ARTISTS = -1
 """The mark of a generated drawing that was changed on the artist's behalf."""
+WAYS = 24
+"""Largest number of ways to find renamed materials among those whose slots were removed."""
 _NONE = 0
 _FILLS = ("fill_id", "hide_stroke")
 _SETTINGS = {True: b"fill by attribute", False: b"fill by material"}
@@ -53,13 +57,12 @@ class Slots:
         self._now = _names(data)
         self._then = _known(data)
 
+    @cached_property
     def numberings(self) -> list[np.ndarray]:
         """For each slot the number that it had, at each time: first the present one."""
         found = [np.arange(len(self._now), dtype=np.int32)]
         for then in self._then:
-            numbers = _numbers(self._now, then)
-            if not any(np.array_equal(numbers, each) for each in found):
-                found.append(numbers)
+            found += [each for each in _numbers(self._now, then) if not any(np.array_equal(each, other) for other in found)]
         return found
 
 
@@ -84,17 +87,19 @@ def _remember(data) -> None:
     data[PROPERTY] = json.dumps([*known, now], separators=(",", ":"))
 
 
-def _numbers(now: list[str], then: list[str]) -> np.ndarray:
-    """The number that each slot had `then`. A new one has a number that none had."""
+def _numbers(now: list[str], then: list[str]) -> Iterator[np.ndarray]:
+    """The numbers that the slots may have had `then`. A new one has a number that none had."""
     place = {name: k for k, name in reversed(list(enumerate(then)))}
-    numbers = np.arange(len(then), len(then) + len(now), dtype=np.int32)
-    for k, name in enumerate(now):
-        if name in place:
-            numbers[k] = place[name]
-        elif k < len(then) and then[k] not in now:
-            # Its material has another name now.
-            numbers[k] = k
-    return numbers
+    numbers = np.array([place.get(name, len(then) + k) for k, name in enumerate(now)], np.int32)
+    unknown = [k for k, name in enumerate(now) if name not in place]
+    gone = [k for k, name in enumerate(then) if name not in now]
+    # Materials with another name are where they were, unless slots were removed: then each may be each.
+    ways: Iterable[tuple[int, ...]] = [tuple(k if k in gone else len(then) + k for k in unknown)]
+    if len(now) < len(then):
+        ways = islice(permutations(gone, len(unknown)), WAYS)
+    for way in ways:
+        numbers[unknown] = way
+        yield numbers.copy()
 
 
 def note(data, layer: str, frames: Iterable[int]) -> None:
@@ -129,7 +134,7 @@ def untouched(content: st.Content, slots: Slots) -> bool | None:
     known = int(marks[0])
     if known == THE_ARTISTS or (marks != known).any():
         return False
-    index, numberings = content.strokes("material_index"), slots.numberings()
+    index, numberings = content.strokes("material_index"), slots.numberings
     renumbered = [np.where(index < len(each), each[np.minimum(index, len(each) - 1)], index) if len(each) else index for each in numberings]
     for by_id in (gp.FILL_BY_ID, not gp.FILL_BY_ID):
         rest = _rest(content, by_id)
