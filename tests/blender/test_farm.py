@@ -151,6 +151,24 @@ def test_results_are_taken(addon, sent, tmp_path):
     assert shots.snapshot(sent) == again, "a second time changes nothing"
 
 
+def test_snapped_lines_that_were_changed_meanwhile_stay(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.match_contours()
+    bpy.ops.rototoon.track()
+    bpy.ops.rototoon.snap()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / f"{DAY}.blend"))
+    bpy.ops.rototoon.send_to_farm(directory=str(tmp_path / "farm"), use_snap=True)
+    studio.come_back(addon, ob, tmp_path / "farm", 2.0, f"{DAY}_{ob.name}")
+    gp, layer = addon("blender.grease_pencil"), ob.data.layers["Snapped"]
+    handle = gp.drawings(layer)[5][0]
+    points = gp.positions(handle, int(gp.offsets(handle)[-1])) + np.float32(0.1)
+    gp.put(handle, "position", points)
+    collect(tmp_path)
+    assert f'"{ob.name}": the snapped drawing that you had changed on frame 5 stays, as a key' in last_report(addon).text
+    assert {f: kind for f, (_, kind) in gp.drawings(layer).items() if kind != "GENERATED"} == {5: "KEYFRAME"}
+    assert np.array_equal(gp.positions(gp.drawings(layer)[5][0], len(points)), points)
+
+
 def test_what_was_changed_meanwhile_stays(addon, sent, tmp_path):
     shots.move(addon, sent, 9, 1, (5.0, 0.0))  # a key of the diamond
     before = {frame: places(addon, sent, frame) for frame in range(1, 10)}

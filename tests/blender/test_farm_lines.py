@@ -8,6 +8,7 @@ import shutil
 
 import bpy
 import line_shots as ls
+import looks
 import numpy as np
 import pytest
 import shots
@@ -211,6 +212,10 @@ def test_lines_that_were_changed_meanwhile_stay(addon, film, tmp_path):  # noqa:
     assert_stays(addon, film, tmp_path, "Nothing was taken.*its drawings on the layer \"Lines\" were changed since they were sent.*press Trace Drawing")
     assert kinds(addon, film, "Lines")[4] == "GENERATED", "only the operators make it a key"
     film = opened(tmp_path)  # noqa: F811
+    collect(tmp_path)
+    looks.CHANGES["opacity"](addon, handle_of(addon, film, "Lines", 4))
+    assert_stays(addon, film, tmp_path, "were changed since they were sent")
+    film = opened(tmp_path)
     move(addon, film, "Lines", 6)
     assert_stays(addon, film, tmp_path, "were changed since they were sent")
     film, gp = opened(tmp_path), addon("blender.grease_pencil")
