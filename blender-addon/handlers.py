@@ -11,6 +11,7 @@ from bpy.app.handlers import persistent
 from .blender import footage, guard, movie
 from .capture import arrivals, live, sessions, stand
 from .capture.operators.footage_base import used_folders
+from .lines import older_files
 from .style import clip_browser
 
 _FIELDS = ("pattern", "movie")
@@ -20,6 +21,8 @@ _FIELDS = ("pattern", "movie")
 def _loaded(*_args) -> None:
     sessions.clear()
     movie.mark_used(used_folders())
+    for ob in bpy.data.objects:
+        older_files.mark(ob)
 
 
 @persistent

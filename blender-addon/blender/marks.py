@@ -19,7 +19,8 @@ Why so:
 - Blender numbers materials anew when the artist removes or moves a slot. `Slots` keeps the names of the slots at each marking, and the drawing
   is compared under these numbers too. A material that only got another name has its old number.
 - Colours in bytes are compared as bytes: versions of Blender convert them with different rounding.
-- A file of an older version has no marks. Then its callers ask what they noted before there were marks.
+- A file of an older version has no marks. `lines.older_files` sets them when it is opened. Without them callers ask what they noted before there
+  were marks.
 
 Limits: Blender does not tell weights of vertex groups, so they do not count. Attributes of types that Python cannot read as arrays do not
 count. One change in four thousand million has the same checksum.
@@ -105,6 +106,8 @@ def _numbers(now: list[str], then: list[str]) -> Iterator[np.ndarray]:
 def note(data, layer: str, frames: Iterable[int]) -> None:
     """Marks the drawings of a layer on some frames as generated just so."""
     wanted = set(frames)
+    if not wanted:
+        return
     with gp.copied(data) as copy:
         # Read from a copy, so that drawings with equal arrays go on sharing them.
         drawings = gp.drawings(gp.find_layer_of(copy, layer))
@@ -183,17 +186,32 @@ def _rest(content: st.Content, by_id: bool) -> int:
     total = zlib.crc32(_SETTINGS[by_id])
     for values in (content.sizes.astype(np.int32), content.types.astype(np.int8), content.point["position"]):
         total = zlib.crc32(_bytes(values), total)
+    for name, values in _counting(content, by_id):
+        total = zlib.crc32(_bytes(values), zlib.crc32(name.encode(), total))
+    return total
+
+
+def _counting(content: st.Content, by_id: bool) -> Iterator[tuple[str, np.ndarray]]:
+    """The attributes that count, but for places and materials, with their values."""
     for side in (content.point, content.curve):
         for name in sorted(side):
             if name in ("position", "material_index") or name.startswith("rototoon_") or (name in _FILLS and not by_id):
                 continue
             values = side[name]
-            if (values == gp.DEFAULTS.get(name, 0)).all():
-                continue
-            if content.kinds.get(name) == "BYTE_COLOR":
-                values = _as_bytes(values)
-            total = zlib.crc32(_bytes(values), zlib.crc32(name.encode(), total))
-    return total
+            if not (values == gp.DEFAULTS.get(name, 0)).all():
+                yield name, _as_bytes(values) if content.kinds.get(name) == "BYTE_COLOR" else values
+
+
+def stroke_looks(content: st.Content) -> np.ndarray:
+    """A checksum of each stroke's look alone: int32, never 0."""
+    totals, starts = [1] * len(content.sizes), content.starts.tolist()
+    for name, values in _counting(content, by_id=True):
+        values, of_curve, start = _bytes(values), name in content.curve, zlib.crc32(name.encode())
+        for i, (a, b) in enumerate(zip(starts, starts[1:])):
+            totals[i] = zlib.crc32(values[i] if of_curve else values[a:b], zlib.crc32(start.to_bytes(4, "little"), totals[i]))
+    index = np.ascontiguousarray(content.strokes("material_index"), np.int32)
+    totals = [zlib.crc32(index[i], total) or 1 for i, total in enumerate(totals)]
+    return np.array(totals, np.uint32).view(np.int32)
 
 
 def _bytes(values: np.ndarray) -> np.ndarray:

@@ -130,14 +130,14 @@ NAMED = 3
 """Largest number of parts that a message names."""
 
 
-def told(run: Run, strokes: int) -> str:
-    """What a run has done."""
+def told(run: Run, strokes: int, reset: bool = False) -> str:
+    """What a run has done. `reset` is whether it set looks back."""
     frames: set[int] = set()
     for part in run.inputs["parts"]:
         drawn = np.asarray(run.entry.session.tracks(part["name"]).frames).astype(int)
         frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
     text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
-    return text if run.worker.result.solved or not strokes else "Nothing had changed: " + text
+    return text if run.worker.result.solved or not strokes or reset else "Nothing had changed: " + text
 
 
 def of_moved_lines(ob, run: Run) -> str:

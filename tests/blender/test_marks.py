@@ -271,3 +271,64 @@ def test_fitted_and_cut_snapped_lines_are_snapped_again(addon, fake, tmp_path):
     bpy.ops.rototoon.snap()
     assert set(snapped_kinds(ob).values()) == {"GENERATED"}
     assert np.array_equal(content(addon, ob, "Snapped", 5).point["position"], before.point["position"])
+
+
+def test_track_says_where_it_sets_looks_back(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    looks.second_material(ob)
+    bpy.ops.rototoon.track()
+    name = shots.layer_of(ob).name
+    looks.CHANGES["radius"](addon, drawing(addon, ob, name, 5))
+    looks.CHANGES["opacity"](addon, drawing(addon, ob, name, 6))
+    # The keys have no vertex colours, so this one stays.
+    looks.CHANGES["vertex colour"](addon, drawing(addon, ob, name, 8))
+    addon("common.reports").take()
+    bpy.ops.rototoon.track()
+    report = said(addon)
+    assert report.warnings == ("tracked contours look like the keys again on 5 and 6: to change a part's look, change it on its keys",)
+    assert not report.text.startswith("Nothing had changed")
+    assert content(addon, ob, name, 8).point["vertex_color"][-1].any()
+    bpy.ops.rototoon.track()
+    assert said(addon).warnings == (), "it is said once"
+    # A look of the keys goes to the tracked contours: that is what the artist wants.
+    looks.CHANGES["radius"](addon, drawing(addon, ob, name, 1))
+    bpy.ops.rototoon.track()
+    assert said(addon).warnings == ()
+    before = shots.snapshot(ob)
+    bpy.ops.rototoon.track()
+    assert shots.snapshot(ob) == before
+
+
+def test_a_file_of_a_version_without_marks_has_them_once_it_is_opened(addon, traced, fake, tmp_path):  # noqa: F811
+    gp = addon("blender.grease_pencil")
+    other = between(addon, (1, 9, 17))
+    move(addon, other, 5)
+    looks.CHANGES["softness"](addon, drawing(addon, other, "Lines", 12))
+    for ob in (traced, other):
+        looks.without_marks(addon, ob)
+    handle = handle_of(addon, traced, "Lines", 4)
+    gp.put(handle, "position", gp.positions(handle, int(gp.offsets(handle)[-1])) + np.float32(0.1))
+    names, path = (traced.name, other.name), str(tmp_path / "older.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    lines, other = (bpy.data.objects[name] for name in names)
+    # What was changed before counts as that version saw it: moved points alone.
+    looks.CHANGES["opacity"](addon, handle_of(addon, lines, "Lines", 2))
+    looks.CHANGES["radius"](addon, drawing(addon, other, "Lines", 14))
+    for ob in (lines, other):
+        bpy.context.view_layer.objects.active = ob
+        (bpy.ops.rototoon.clear_lines if ob == lines else bpy.ops.rototoon.clear_in_betweens)()
+    assert list(kinds(addon, lines, "Lines")) == [2, 4]
+    assert list(frames(addon, other)) == [1, 5, 9, 14, 17]
+
+
+def test_snapped_lines_of_a_version_without_marks_are_kept_if_changed_after_opening(addon, fake, tmp_path):
+    ob = snapped(addon, tmp_path)
+    looks.without_marks(addon, ob)
+    path = str(tmp_path / "older.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.context.object
+    move(addon, ob, 5, layer="Snapped")
+    bpy.ops.rototoon.snap()
+    assert [frame for frame, kind in snapped_kinds(ob).items() if kind == "KEYFRAME"] == [5]

@@ -6,7 +6,7 @@ from ...blender import guard
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnContours
-from .. import contours, document, identity, properties, stand, tracking
+from .. import contours, document, identity, properties, set_back, stand, tracking
 
 
 class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
@@ -43,13 +43,16 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
         return self._tracking.worker
 
     def finish(self, _context, _work):
+        looks = set_back.changed(self._ob)
         strokes = yield from tracking.finishing(self._ob, self._tracking)
         if strokes is None:
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
+        reset = set_back.note(self._ob, looks)
+        self.warn(reset)
         self.warn(tracking.where_to_look(self._ob, self._tracking))
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
         moved = tracking.of_moved_lines(self._ob, self._tracking)
-        return tracking.told(self._tracking, strokes) + moved + tracking.goes_on(self._ob, self._tracking)
+        return tracking.told(self._tracking, strokes, bool(reset)) + moved + tracking.goes_on(self._ob, self._tracking)
 
 
 def _match(progress, found: contours.Contours, mapper, number: int) -> None:
