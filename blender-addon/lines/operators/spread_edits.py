@@ -26,7 +26,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     shape: bpy.props.BoolProperty(name="Shape", description="Moved points, cuts and joins", default=True)
-    look: bpy.props.BoolProperty(name="Look", description="Width, opacity, colour and material of edited strokes", default=True)
+    look: bpy.props.BoolProperty(name="Look", description="Width, opacity, colours, material, caps, softness and your own attributes of edited strokes", default=True)
     delete: bpy.props.BoolProperty(name="Deleted Strokes", description="Delete the strokes that you deleted here", default=True)
     selected: bpy.props.BoolProperty(
         name="Selected Strokes Only", description="Only edits of strokes with a selected point; nothing is deleted", default=False
