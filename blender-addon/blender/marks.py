@@ -203,14 +203,17 @@ def _counting(content: st.Content, by_id: bool) -> Iterator[tuple[str, np.ndarra
 
 
 def stroke_looks(content: st.Content) -> np.ndarray:
-    """A checksum of each stroke's look alone: int32, never 0."""
+    """A checksum of each stroke's look alone: int32, never 0. It does not depend on the other strokes of the drawing."""
     totals, starts = [1] * len(content.sizes), content.starts.tolist()
     for name, values in _counting(content, by_id=True):
-        values, of_curve, start = _bytes(values), name in content.curve, zlib.crc32(name.encode())
+        of_curve, named = name in content.curve, zlib.crc32(name.encode()).to_bytes(4, "little")
+        uncommon = (values != gp.DEFAULTS.get(name, 0)).reshape(len(values), -1).any(1)
+        values = _bytes(values)
         for i, (a, b) in enumerate(zip(starts, starts[1:])):
-            totals[i] = zlib.crc32(values[i] if of_curve else values[a:b], zlib.crc32(start.to_bytes(4, "little"), totals[i]))
+            if uncommon[i] if of_curve else uncommon[a:b].any():
+                totals[i] = zlib.crc32(values[i : i + 1] if of_curve else values[a:b], zlib.crc32(named, totals[i]))
     index = np.ascontiguousarray(content.strokes("material_index"), np.int32)
-    totals = [zlib.crc32(index[i], total) or 1 for i, total in enumerate(totals)]
+    totals = [zlib.crc32(index[i : i + 1], total) or 1 for i, total in enumerate(totals)]
     return np.array(totals, np.uint32).view(np.int32)
 
 

@@ -137,7 +137,7 @@ def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
     for name in (gp.TRACKED, gp.LINE, gp.ALONG):
         if name not in content.point:
             content.kinds[name], content.point[name] = gp.TYPES[name][0], gp.blank(name, len(points))
-    starts, looks = content.starts, look_sums(content)
+    starts, looks = content.starts, marks.stroke_looks(content)
     known = content.strokes(gp.LOOK).copy()
     content.set_strokes(gp.LOOK, looks if chosen is None else np.where(chosen, looks, known))
     for i in range(len(content.sizes)) if chosen is None else np.flatnonzero(chosen):
@@ -148,59 +148,34 @@ def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
 
 
 LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id", "hide_stroke")
-"""What of a stroke counted as its look before drawings had marks."""
-_FORM = {"position", "curve_type", "handle_left", "handle_right", "handle_type_left", "handle_type_right", "nurbs_order", "nurbs_weight", "knots_mode", "resolution"}
-"""What is the form of a stroke and no look."""
+"""What of a stroke counted as its look in files of versions without marks, and counts on painted ones."""
 
 
-def further_looks(content: st.Content) -> list[str]:
-    """The other attributes of a drawing that are the look of its strokes: caps, softness, textures, and the artist's own."""
-    names = {*content.point, *content.curve} - {*LOOKS, *_FORM}
-    return sorted(name for name in names if not name.startswith("rototoon_"))
-
-
-def look_sums(content: st.Content, further: bool = True) -> np.ndarray:
-    """Checksum of each stroke's look: int32. Without `further` it is that of versions without marks, which knew `LOOKS` alone. No stroke
-    has the same one both ways."""
+def look_sums(content: st.Content) -> np.ndarray:
+    """Checksum of `LOOKS` of each stroke: int32."""
     starts, points = content.starts, len(content.point["position"])
     of_points = [content.point.get(name) for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
     of_points = [gp.blank(name, points) if each is None else each for name, each in zip(names, of_points)]
     of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE" and name != "hide_stroke"]
     hidden = content.strokes("hide_stroke")
-    more = [_uncommon(content, name) for name in further_looks(content)] if further else []
     found = np.zeros(len(content.sizes), np.int64)
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
-        total = int(further)
+        total = 0
         for each in of_points:
             total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
         for each in of_strokes:
             total = zlib.crc32(np.ascontiguousarray(each[i]), total)
-        # Strokes whose line is shown have the sums of versions that did not know of lines that are not.
-        total = zlib.crc32(b"hidden", total) if hidden[i] else total
-        for name, values, of_curve, uncommon in more:
-            if uncommon[i]:
-                total = zlib.crc32(np.ascontiguousarray(values[i] if of_curve else values[a:b]), zlib.crc32(name, total))
-        found[i] = total
+        # Strokes whose line is shown have the sums of earlier versions.
+        found[i] = zlib.crc32(b"hidden", total) if hidden[i] else total
     return found.astype(np.uint32).view(np.int32)
 
 
 def has_looks(content: st.Content) -> np.ndarray:
     """For each stroke: whether its look is the one that was noted. What an earlier version noted counts as that version saw it."""
     known = content.strokes(gp.LOOK)
-    same = look_sums(content) == known
-    return same if same.all() else same | (look_sums(content, further=False) == known)
-
-
-def _uncommon(content: st.Content, name: str) -> tuple[bytes, np.ndarray, bool, np.ndarray]:
-    """An attribute: its name, its values, whether they are of strokes, and which strokes have another value than the default."""
-    of_curve = name in content.curve
-    values = content.curve[name] if of_curve else content.point[name]
-    other = (values != gp.DEFAULTS.get(name, 0)).reshape(len(values), -1).any(1)
-    if not of_curve:
-        before = np.concatenate([[0], np.cumsum(other)])
-        other = before[content.starts[1:]] > before[content.starts[:-1]]
-    return name.encode(), values, of_curve, other
+    same = marks.stroke_looks(content) == known
+    return same if same.all() else same | (look_sums(content) == known)
 
 
 def shares(points: np.ndarray) -> np.ndarray:

@@ -29,6 +29,13 @@ SAMPLES = 33
 """Samples of a stroke for the similarity."""
 
 
+_FORM = {
+    "position", "cyclic", "handle_left", "handle_right", "handle_type_left", "handle_type_right", "nurbs_order", "nurbs_weight", "knots_mode",
+    "resolution",
+}  # fmt: skip
+"""Attributes that are the form of a stroke and no look."""
+
+
 @dataclass
 class Edit:
     """What happened to strokes on one frame."""
@@ -284,10 +291,7 @@ def _look_like(made: st.Content, source: st.Content, i: int) -> None:
     """Gives a stroke the look of stroke `i` of another drawing, by the share of the length."""
     a, b = source.starts[i : i + 2]
     where, known = dr.shares(made.point["position"]), dr.shares(source.point["position"][a:b])
-    for name in (*dr.LOOKS, *dr.further_looks(source)):
-        if name == "cyclic":
-            # That is shape, too: whoever reshapes the stroke sets it.
-            continue
+    for name in _looks_of(source):
         if name in source.curve:
             _have(made, source, name)
             made.curve[name] = source.curve[name][i : i + 1].copy()
@@ -300,6 +304,11 @@ def _look_like(made: st.Content, source: st.Content, i: int) -> None:
             columns = own.reshape(b - a, -1).astype(np.float64)
             values = np.stack([np.interp(where, known, columns[:, k]) for k in range(columns.shape[1])], 1)
             made.point[name] = values.reshape((len(where), *own.shape[1:])).astype(own.dtype)
+
+
+def _looks_of(content: st.Content) -> list[str]:
+    """The attributes that are looks of strokes, the artist's own too."""
+    return sorted(name for name in {*content.point, *content.curve} - _FORM if not name.startswith("rototoon_"))
 
 
 def _have(made: st.Content, source: st.Content, name: str) -> None:

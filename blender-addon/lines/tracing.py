@@ -323,7 +323,7 @@ def rows_of(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[s
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
     _dress(rows, frame, strokes, shown, names, materials)
-    rows.values[gp.LOOK] = dr.look_sums(st.of_rows(rows))
+    rows.values[gp.LOOK] = marks.stroke_looks(st.of_rows(rows))
     return rows
 
 

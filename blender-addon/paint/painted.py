@@ -84,7 +84,7 @@ def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[i
     if gp.FILL_BY_ID:
         found.values["fill_id"] = _fills([region.number for region in regions], set(taken))
         found.values["hide_stroke"] = np.ones(count, bool)
-    found.values[gp.LOOK] = dr.look_sums(st.of_rows(found), further=False) if count else gp.blank(gp.LOOK, 0)
+    found.values[gp.LOOK] = dr.look_sums(st.of_rows(found)) if count else gp.blank(gp.LOOK, 0)
     return found
 
 

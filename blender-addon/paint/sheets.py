@@ -42,7 +42,7 @@ class Sheet:
     def sum(self) -> int:
         """Checksum of the artist's strokes."""
         own = chosen(self.content, self.own)
-        looks = dr.look_sums(own, further=False) if len(own.sizes) else np.zeros(0, np.int32)
+        looks = dr.look_sums(own) if len(own.sizes) else np.zeros(0, np.int32)
         return records.checksum(own.point["position"], looks, own.sizes) if len(own.sizes) else 0
 
 
@@ -70,7 +70,7 @@ def _made(content: st.Content) -> np.ndarray:
     starts = content.starts
     same = (changed[starts[1:]] == changed[starts[:-1]]) & content.strokes("cyclic")
     # A stroke that lost points has another sum: that of its look counts its points.
-    return made & same & (dr.look_sums(content, further=False) == content.strokes(gp.LOOK))
+    return made & same & (dr.look_sums(content) == content.strokes(gp.LOOK))
 
 
 def chosen(content: st.Content, which: Iterable[int]) -> st.Content:
