@@ -43,6 +43,10 @@ def is_tweened(handle, kind: str) -> bool:
     return bool(len(made) and made.all())
 
 
+def _has_tweened(handle) -> bool:
+    return bool(gp.has(handle, gp.TWEENED) and gp.value(handle, gp.TWEENED, len(gp.offsets(handle)) - 1).any())
+
+
 def frames_of(layer, record: records.Layer) -> Frames:
     """Sorts the frames of a layer into keys and in-betweens."""
     found, slots = Frames([], []), marks.Slots(layer.id_data)
@@ -50,6 +54,9 @@ def frames_of(layer, record: records.Layer) -> Frames:
         for number, (handle, kind) in gp.drawings(gp.find_layer_of(data, layer.name)).items():
             if not is_tweened(handle, kind):
                 found.keys.append(number)
+                if kind == gp.GENERATED and _has_tweened(handle):
+                    # The artist has drawn on it.
+                    found.edited.append(number)
             elif _is_edited(st.read(handle), number, record, slots):
                 found.keys.append(number)
                 found.edited.append(number)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shots
 from line_stage import film, handle_of, kinds, number_of, pictures, said, traced  # noqa: F401 - fixtures
-from test_strokes import content, drawing
+from test_strokes import add, content, drawing, wave
 from test_tween import frames, keyed, move, points
 
 
@@ -108,6 +108,17 @@ def test_in_betweens_that_were_changed_are_not_cleared(addon):
     assert frames(addon, ob) == expected
     for frame, before in kept.items():
         assert np.array_equal(content(addon, ob, "Lines", frame).point["position"], before)
+
+
+def test_an_in_between_with_a_new_stroke_becomes_a_key_too(addon):
+    ob = between(addon)
+    add(addon, ob, "Lines", 5, [wave(20)])
+    move(addon, ob, 9, by=0.4)
+    bpy.ops.rototoon.update_in_betweens()
+    assert said(addon).text.endswith("1 drawing that you had changed is a key now")
+    assert frames(addon, ob)[5] == "BREAKDOWN" and len(content(addon, ob, "Lines", 5).sizes) == 4
+    bpy.ops.rototoon.clear_in_betweens()
+    assert list(frames(addon, ob)) == [1, 5, 9]
 
 
 def test_clearing_around_the_playhead_ends_at_a_changed_in_between(addon):
