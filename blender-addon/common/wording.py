@@ -11,14 +11,14 @@ def counted(number: int, noun: str) -> str:
 
 
 def listed(frames: list[int]) -> str:
-    """Frame numbers as a text; three or more neighbours become spans: 3 to 5, 9 and 12."""
+    """Frame numbers as a text; neighbours become spans: 3 to 5, 9 and 12."""
     spans: list[list[int]] = []
     for frame in sorted(frames):
         if spans and frame == spans[-1][1] + 1:
             spans[-1][1] = frame
         else:
             spans.append([frame, frame])
-    texts = [text for a, b in spans for text in ([f"{a} to {b}"] if b > a + 1 else map(str, range(a, b + 1)))]
+    texts = [str(a) if a == b else f"{a} {'and' if b == a + 1 else 'to'} {b}" for a, b in spans]
     return texts[0] if len(texts) == 1 else ", ".join(texts[:-1]) + f" and {texts[-1]}"
 
 

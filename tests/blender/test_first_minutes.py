@@ -169,7 +169,7 @@ def test_track_tells_where_to_look(addon, fake, tmp_path):
     run = SimpleNamespace(entry=entry, inputs=entry.inputs, moved={}, worker=SimpleNamespace(result=summary))
     assert tracking.told(run, 14) == "14 contours drawn on 7 frames"
     assert tracking.where_to_look(ob, run) == '"Part 1" is most likely off on 5; "Part 2" is most likely off on 5'
-    assert addon("common.wording").listed([3, 4, 5, 9, 12, 13]) == "3 to 5, 9, 12 and 13"
+    assert addon("common.wording").listed([3, 4, 5, 9, 12, 13]) == "3 to 5, 9 and 12 and 13"
 
 
 def test_writing_goes_in_steps(addon, fake, tmp_path):
