@@ -1,5 +1,5 @@
-"""Handlers for opening, saving and changing files: they close sessions, keep footage paths right, notice new contours, and start live
-tracking."""
+"""Handlers for opening, saving and changing files: they close sessions, keep footage paths right, mark the generated drawings of older files,
+notice new contours, and start live tracking."""
 
 from __future__ import annotations
 

@@ -43,6 +43,24 @@ def test_what_blender_does_by_itself_is_no_change(addon, tmp_path):
     assert told(addon, bpy.context.object, 5, "Other")
 
 
+def test_modes_and_undo_are_no_change(addon):
+    ob = between(addon)
+    ob.select_set(True)
+    bpy.context.scene.frame_set(5)
+    for mode in ("EDIT", "SCULPT_GREASE_PENCIL", "PAINT_GREASE_PENCIL", "VERTEX_GREASE_PENCIL", "WEIGHT_GREASE_PENCIL"):
+        bpy.ops.object.mode_set(mode=mode)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        assert told(addon, ob, 5), mode
+    bpy.ops.ed.undo_push(message="before")
+    looks.CHANGES["radius"](addon, drawing(addon, ob, "Lines", 5))
+    bpy.ops.ed.undo_push(message="radius")
+    assert told(addon, ob, 5) is False
+    bpy.ops.ed.undo()
+    assert told(addon, bpy.context.object, 5)
+    bpy.ops.ed.redo()
+    assert told(addon, bpy.context.object, 5) is False and told(addon, bpy.context.object, 6)
+
+
 def test_other_numbers_of_materials_are_no_change(addon):
     ob = keyed(addon, (1, 9))
     for _ in range(3):
