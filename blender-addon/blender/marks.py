@@ -5,8 +5,8 @@ What: whoever generates a drawing marks it at the end (`note`). The mark is one 
 a moved point, another look, a stroke more or less, another order.
 
 How: the checksum is a CRC over the numbers of points, the curve types, the points, and all attributes by name but for those of Rototoon and
-those whose name begins with a dot, which are selections. The material is a checksum of its own, combined by exclusive or, so that it can be
-compared under another numbering without a look at the rest.
+those whose name begins with a dot, which are selections. The names of the strokes' materials are a checksum of their own, combined by exclusive or, so
+that they can be compared under other names without a look at the rest.
 
 Why so:
 
@@ -16,8 +16,8 @@ Why so:
   the default counts as none, and so does the sign of zero.
 - Blender 5.1 and later keep the fill of a stroke in attributes, which they make when they open a file of an earlier version. So the checksum
   knows which way it was made, and one of an earlier Blender leaves these attributes out.
-- Blender numbers materials anew when the artist removes or moves a slot. `Slots` keeps the names of the slots at each marking, and the drawing
-  is compared under these numbers too. A material that only got another name has its old number.
+- Blender numbers materials anew when the artist removes or moves a slot. So their names count, and no numbers. An artist may give a material
+  another name, too: `Slots` keeps the names at each marking, and a material that has a new name is compared under those that are gone.
 - Colours in bytes are compared as bytes: versions of Blender convert them with different rounding.
 - A file of an older version has no marks. `lines.older_files` sets them when it is opened. Without them callers ask what they noted before there
   were marks.
@@ -33,7 +33,7 @@ import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from itertools import islice, permutations
+from itertools import islice, pairwise, permutations
 
 import numpy as np
 
@@ -45,7 +45,7 @@ PROPERTY = "rototoon_slots"
 THE_ARTISTS = -1
 """The mark of a generated drawing that was changed on the artist's behalf."""
 WAYS = 24
-"""Largest number of ways to find renamed materials among those whose slots were removed."""
+"""Largest number of ways to look for materials with another name among those that are gone, where slots were removed."""
 _NONE = 0
 _FILLS = ("fill_id", "hide_stroke")
 _SETTINGS = {True: b"fill by attribute", False: b"fill by material"}
@@ -55,15 +55,15 @@ class Slots:
     """The material slots of Grease Pencil data, now and at each marking."""
 
     def __init__(self, data):
-        self._now = _names(data)
-        self._then = _known(data)
+        self.now = _names(data)
+        self.then = _known(data)
 
     @cached_property
-    def numberings(self) -> list[np.ndarray]:
-        """For each slot the number that it had, at each time: first the present one."""
-        found = [np.arange(len(self._now), dtype=np.int32)]
-        for then in self._then:
-            found += [each for each in _numbers(self._now, then) if not any(np.array_equal(each, other) for other in found)]
+    def namings(self) -> list[list[str]]:
+        """The names that the materials in the slots may have had: first those that they have."""
+        found = [self.now]
+        for then in self.then:
+            found += [each for each in _namings(self.now, then) if each not in found]
         return found
 
 
@@ -83,24 +83,26 @@ def _remember(data) -> None:
     now, known = _names(data), _known(data)
     if any(then[: len(now)] == now for then in known):
         return
-    # Slots that were only added leave the numbers of the others.
     known = [then for then in known if now[: len(then)] != then]
     data[PROPERTY] = json.dumps([*known, now], separators=(",", ":"))
 
 
-def _numbers(now: list[str], then: list[str]) -> Iterator[np.ndarray]:
-    """The numbers that the slots may have had `then`. A new one has a number that none had."""
-    place = {name: k for k, name in reversed(list(enumerate(then)))}
-    numbers = np.array([place.get(name, len(then) + k) for k, name in enumerate(now)], np.int32)
-    unknown = [k for k, name in enumerate(now) if name not in place]
+def _namings(now: list[str], then: list[str]) -> Iterator[list[str]]:
+    """The names that the materials may have had `then`, if some of them have another name now."""
+    # A material that is in a second slot has taken the place of another one.
+    unknown = [k for k, name in enumerate(now) if name not in then or name in now[:k]]
     gone = [k for k, name in enumerate(then) if name not in now]
-    # Materials with another name are where they were, unless slots were removed: then each may be each.
-    ways: Iterable[tuple[int, ...]] = [tuple(k if k in gone else len(then) + k for k in unknown)]
+    ways: Iterable[tuple[int, ...]] = [tuple(k for k in unknown if k in gone)]
     if len(now) < len(then):
+        # Slots were removed, so they are not where they were: each may be each.
         ways = islice(permutations(gone, len(unknown)), WAYS)
+    else:
+        unknown = [k for k in unknown if k in gone]
     for way in ways:
-        numbers[unknown] = way
-        yield numbers.copy()
+        names = list(now)
+        for k, was in zip(unknown, way):
+            names[k] = then[was]
+        yield names
 
 
 def note(data, layer: str, frames: Iterable[int]) -> None:
@@ -112,21 +114,18 @@ def note(data, layer: str, frames: Iterable[int]) -> None:
         # Read from a copy, so that drawings with equal arrays go on sharing them.
         drawings = gp.drawings(gp.find_layer_of(copy, layer))
         contents = {frame: st.read(drawings[frame][0]) for frame in wanted & drawings.keys()}
-    sums = {frame: (len(content.sizes), sum_of(content)) for frame, content in contents.items()}
+    names = _names(data)
     for frame, (handle, _) in gp.drawings(gp.find_layer_of(data, layer)).items():
-        if frame in sums and sums[frame][0]:
-            gp.put(handle, gp.MARK, np.full(*sums[frame], np.int32))
+        content = contents.get(frame)
+        if content is not None and len(content.sizes):
+            total = _combined(_rest(content, gp.FILL_BY_ID), content, names)
+            gp.put(handle, gp.MARK, np.full(len(content.sizes), total, np.int32))
     _remember(data)
 
 
 def make_the_artists(handle) -> None:
     """Marks a generated drawing as changed by the artist."""
     gp.put(handle, gp.MARK, np.full(len(gp.offsets(handle)) - 1, THE_ARTISTS, np.int32))
-
-
-def sum_of(content: st.Content) -> int:
-    """The checksum of a drawing, as it is marked: int32."""
-    return _combined(_rest(content, gp.FILL_BY_ID), content.strokes("material_index"))
 
 
 def untouched(content: st.Content, slots: Slots) -> bool | None:
@@ -137,11 +136,11 @@ def untouched(content: st.Content, slots: Slots) -> bool | None:
     known = int(marks[0])
     if known == THE_ARTISTS or (marks != known).any():
         return False
-    index, numberings = content.strokes("material_index"), slots.numberings
-    renumbered = [np.where(index < len(each), each[np.minimum(index, len(each) - 1)], index) if len(each) else index for each in numberings]
+    # Blender numbers nothing anew where all strokes have the first material and no number. To change one it would need numbers.
+    namings = slots.namings if "material_index" in content.curve else slots.namings + slots.then
     for by_id in (gp.FILL_BY_ID, not gp.FILL_BY_ID):
         rest = _rest(content, by_id)
-        if any(_combined(rest, each) == known for each in renumbered):
+        if any(_combined(rest, content, names) == known for names in namings):
             return True
     return False
 
@@ -209,7 +208,7 @@ def stroke_looks(content: st.Content) -> np.ndarray:
         of_curve, named = name in content.curve, zlib.crc32(name.encode()).to_bytes(4, "little")
         uncommon = (values != gp.DEFAULTS.get(name, 0)).reshape(len(values), -1).any(1)
         values = _bytes(values)
-        for i, (a, b) in enumerate(zip(starts, starts[1:])):
+        for i, (a, b) in enumerate(pairwise(starts)):
             if uncommon[i] if of_curve else uncommon[a:b].any():
                 totals[i] = zlib.crc32(values[i : i + 1] if of_curve else values[a:b], zlib.crc32(named, totals[i]))
     index = np.ascontiguousarray(content.strokes("material_index"), np.int32)
@@ -228,7 +227,10 @@ def _as_bytes(linear: np.ndarray) -> np.ndarray:
     return np.round(np.concatenate([colour, linear[:, 3:]], 1) * 255).astype(np.uint8)
 
 
-def _combined(rest: int, materials: np.ndarray) -> int:
-    total = rest ^ zlib.crc32(np.ascontiguousarray(materials, np.int32))
+def _combined(rest: int, content: st.Content, names: list[str]) -> int:
+    """The checksum of everything, with these names of the materials: int32."""
+    index = content.strokes("material_index").tolist()
+    used = "\0".join(names[k] if 0 <= k < len(names) else str(k) for k in index)
+    total = rest ^ zlib.crc32(used.encode())
     total = total - (1 << 32) if total >= 1 << 31 else total
     return 1 if total in (_NONE, THE_ARTISTS) else total

@@ -13,7 +13,7 @@ import numpy as np
 from rototoon import tween
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy, marks
+from ..blender import guard, hierarchy
 from ..blender.errors import Problem
 from . import between, captured, layer_pegs, records, sheets, surroundings
 from . import keys as ks

@@ -10,7 +10,7 @@ def _put(name, value):
     def change(addon, handle):
         gp = addon("blender.grease_pencil")
         starts = gp.offsets(handle)
-        kind, domain = gp.TYPES[name]
+        _, domain = gp.TYPES[name]
         values = gp.value(handle, name, int(starts[-1]) if domain == "POINT" else len(starts) - 1)
         values[-1] = value(values[-1]) if callable(value) else value
         gp.put(handle, name, values)

@@ -81,6 +81,33 @@ def test_other_numbers_of_materials_are_no_change(addon):
     assert told(addon, ob, 6) is False and told(addon, ob, 7)
 
 
+def test_a_change_to_the_material_that_had_the_number_before_is_one(addon):
+    ob, gp = keyed(addon, (1, 9)), addon("blender.grease_pencil")
+    looks.second_material(ob)
+    for frame in (1, 9):
+        gp.put(drawing(addon, ob, "Lines", frame), "material_index", np.zeros(3, np.int32))
+    bpy.ops.rototoon.in_between()
+    ob.active_material_index = 1
+    bpy.ops.object.material_slot_move(direction="UP")
+    assert content(addon, ob, "Lines", 5).curve["material_index"].tolist() == [1, 1, 1] and told(addon, ob, 5)
+    move(addon, ob, 9, by=0.4)
+    bpy.ops.rototoon.update_in_betweens()
+    gp.put(drawing(addon, ob, "Lines", 5), "material_index", np.zeros(3, np.int32))
+    assert told(addon, ob, 5) is False and told(addon, ob, 6)
+
+
+def test_another_material_in_a_slot_is_no_change(addon):
+    ob = between(addon)
+    assert "material_index" not in content(addon, ob, "Lines", 5).curve
+    ob.active_material_index = 1
+    bpy.ops.object.material_slot_move(direction="UP")
+    assert told(addon, ob, 5), "Blender gives strokes without a number the material that is first now"
+    ob.data.materials[0] = bpy.data.materials.new("Third")
+    assert told(addon, ob, 5)
+    ob.data.materials[1] = ob.data.materials[0]
+    assert told(addon, ob, 5)
+
+
 def test_a_drawing_of_an_earlier_blender_is_untouched_when_its_fills_become_attributes(addon, monkeypatch):
     marks, gp = addon("blender.marks"), addon("blender.grease_pencil")
     ob = keyed(addon, (1, 9))
