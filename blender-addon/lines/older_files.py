@@ -39,7 +39,8 @@ def _mark_in_betweens(data) -> None:
         marks.note(data, name, frames & set(ks.frames_of(layer, record).made))
         for span in spans:
             span.marked = True
-    tween_records.write(data, kept)
+        # Nothing is written where nothing is new: a text that cannot be read stays.
+        tween_records.write(data, kept)
 
 
 def _mark_traced(data) -> None:
@@ -52,6 +53,7 @@ def _mark_traced(data) -> None:
             drawings = gp.drawings(gp.find_layer_of(copy, name))
             contents = {frame: st.read(drawings[frame][0]) for frame in unmarked & drawings.keys() if drawings[frame][1] == gp.GENERATED}
         same = {frame for frame, content in contents.items() if dr.sum_of(content) == record.sums[frame]}
-        marks.note(data, name, same)
-        record.marked |= same
-    records.write(data, kept)
+        if same:
+            marks.note(data, name, same)
+            record.marked |= same
+            records.write(data, kept)

@@ -388,3 +388,13 @@ def test_snapped_lines_of_a_version_without_marks_are_kept_if_changed_after_open
     move(addon, ob, 5, layer="Snapped")
     bpy.ops.rototoon.snap()
     assert [frame for frame, kind in snapped_kinds(ob).items() if kind == "KEYFRAME"] == [5]
+
+
+def test_a_record_that_cannot_be_read_stays_when_the_file_is_opened(addon, tmp_path):
+    ob = between(addon)
+    for name in ("rototoon_tween", "rototoon_lines"):
+        ob.data[name] = "{broken"
+    path = str(tmp_path / "broken.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    assert [bpy.context.object.data[name] for name in ("rototoon_tween", "rototoon_lines")] == ["{broken"] * 2
