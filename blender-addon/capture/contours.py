@@ -165,6 +165,7 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
         for stroke in found.drawings[place].strokes:
             _file(found, stroke, by_number.get(stroke.part))
         yield 0.0
+    _take_confidence(found)
     return found
 
 
@@ -187,6 +188,14 @@ def _reading_drawings(ob, found: Contours, more: tuple[str, ...]) -> Iterator[fl
                 if time.perf_counter() > until:
                     break
         yield 0.0
+
+
+def _take_confidence(found: Contours) -> None:
+    """Reads the confidence of tracked contours beside new strokes, which are matched in a thread."""
+    frames = {stroke.frame for stroke in found.loose}
+    for (_, frame), drawing in found.drawings.items():
+        if frame in frames and drawing.has(gp.CONFIDENCE):
+            drawing.value(gp.CONFIDENCE)
 
 
 def _layer(ob, name: str):

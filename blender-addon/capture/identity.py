@@ -1,5 +1,7 @@
 """Parts of strokes: newly drawn strokes are matched to parts, or become new parts.
 
+On a frame without tracked contours the matcher finds the whole figure. On a tracked frame each stroke is judged by itself: see `likeness`.
+
 `decide` works in memory. `write` stores the decisions in the file, after the work that needed them has succeeded.
 """
 
@@ -12,7 +14,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
-from . import closing, correspondence, sessions
+from . import closing, correspondence, likeness, sessions
 from .contours import Contours, Part, Stroke
 
 CLOSING_GAP = 0.05
@@ -26,8 +28,17 @@ class Decisions:
     strokes: list[tuple[Stroke, Part, np.ndarray]] = field(default_factory=list)
     """A stroke, its part, and the control numbers of its drawn points."""
     created: list[Part] = field(default_factory=list)
-    matched: int = 0
-    """Number of strokes that were matched to existing parts."""
+    taken: list[tuple[int, str]] = field(default_factory=list)
+    """Frame and part of the strokes that were matched to existing parts."""
+    on_tracked: set[int] = field(default_factory=set)
+    """Frames of new strokes that have tracked contours too."""
+    doubts: list[str] = field(default_factory=list)
+    """What the artist should look at: strokes that could be something else."""
+
+    @property
+    def matched(self) -> int:
+        """Number of strokes that were matched to existing parts."""
+        return len(self.taken)
 
 
 def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
@@ -38,10 +49,21 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
     loose, found.loose = found.loose, []
     for frame in sorted({stroke.frame for stroke in loose}):
         drawn = [stroke for stroke in loose if stroke.frame == frame]
-        for stroke in _recognise(found, drawn, frame, mapper, decisions):
+        like: dict[int, str] = {}
+        if any(frame in part.made for part in found.parts):
+            decisions.on_tracked.add(frame)
+            left, like = _recognise_tracked(found, drawn, frame, mapper, decisions)
+        else:
+            left = _recognise(found, drawn, frame, mapper, decisions)
+        for stroke in left:
             part = _new_part(found, stroke, mapper, next_number + len(decisions.created))
             _assign(stroke, part, correspondence.identity(part.count), decisions)
             decisions.created.append(part)
+            if id(stroke) in like:
+                decisions.doubts.append(
+                    f'frame {frame}: the new stroke is the new part "{part.name}", though it looks like "{like[id(stroke)]}"; if it is '
+                    f'that, undo, delete the tracked contour of "{like[id(stroke)]}" there too, and try again'
+                )
     for part in found.parts:
         for stroke in part.keys.values():
             if part.count > 1 and len(stroke.points) == part.count and not stroke.control.any():
@@ -77,15 +99,68 @@ def _recognise(
         [(part.closed, points, _labels(found, _nearest(part, frame))) for part, points in zip(candidates, references, strict=True)],
         [(candidate_closed(stroke, shape), shape, own) for stroke, shape, own in zip(drawn, shapes, labels, strict=True)],
     ):
-        part, stroke = candidates[which], drawn[who]
-        where = correspondence.locate(shapes[who], points, part.closed)
-        control = correspondence.invert(where, len(stroke.points), part.closed)
-        if control is None or correspondence.invert(control, part.count, part.closed) is None:
-            continue
-        left.discard(who)
-        _assign(stroke, part, control.astype(np.float32), decisions)
-        decisions.matched += 1
+        if _take(candidates[which], drawn[who], shapes[who], points, decisions):
+            left.discard(who)
     return [drawn[i] for i in sorted(left)]
+
+
+def _take(part: Part, stroke: Stroke, shape: np.ndarray, points: np.ndarray, decisions: Decisions) -> bool:
+    """Makes a stroke the part's key, by the part's points on it. Returns whether that is possible."""
+    where = correspondence.locate(shape, points, part.closed)
+    control = correspondence.invert(where, len(stroke.points), part.closed)
+    if control is None or correspondence.invert(control, part.count, part.closed) is None:
+        return False
+    _assign(stroke, part, control.astype(np.float32), decisions)
+    decisions.taken.append((stroke.frame, part.name))
+    return True
+
+
+def _recognise_tracked(
+    found: Contours, drawn: list[Stroke], frame: int, mapper: Mapper, decisions: Decisions
+) -> tuple[list[Stroke], dict[int, str]]:
+    """As `_recognise`, on a frame with tracked contours. Also returns the parts that strokes without a match look like, by `id`."""
+    candidates = [part for part in found.parts if frame not in part.keys and (part.keys or part.made)]
+    shapes = [mapper.at(stroke.layer, frame).to_pixels(stroke.points) for stroke in drawn]
+    strokes = [
+        likeness.Drawn(candidate_closed(stroke, shape), shape, tuple(_labels(found, stroke)))
+        for stroke, shape in zip(drawn, shapes, strict=True)
+    ]
+    judged, like = likeness.judge([_known(found, part, frame, mapper) for part in candidates], strokes, _match_alone)
+    left = set(range(len(drawn)))
+    for each in judged:
+        part = candidates[each.part]
+        if not _take(part, drawn[each.stroke], shapes[each.stroke], each.points, decisions):
+            continue
+        left.discard(each.stroke)
+        if each.doubt:
+            decisions.doubts.append(
+                f'frame {frame}: the new stroke is taken as a key of "{part.name}", but {each.doubt}; if it is another part, undo, give '
+                "it a material or a layer of its own, and try again"
+            )
+    return [drawn[i] for i in sorted(left)], {id(drawn[i]): name for i, name in like.items() if i in left}
+
+
+def _known(found: Contours, part: Part, frame: int, mapper: Mapper) -> likeness.Known:
+    there = part.made.get(frame)
+    strokes = part.keys | part.made
+    stroke = there or strokes[min(strokes, key=lambda other: (abs(other - frame), other))]
+    points = mapper.at(stroke.layer, stroke.frame).to_pixels(stroke.control_points(part.closed))
+    labels = frozenset(tuple(_labels(found, each)) for each in (part.keys or part.made).values())
+    lost = there is not None and _confidence(found, there) < likeness.LOST
+    return likeness.Known(part.name, part.closed, points, labels, there is not None, lost)
+
+
+def _confidence(found: Contours, stroke: Stroke) -> float:
+    drawing = found.drawings[stroke.layer, stroke.frame]
+    return float(drawing.value(gp.CONFIDENCE)[stroke.span].mean()) if drawing.has(gp.CONFIDENCE) else 1.0
+
+
+def _match_alone(part: likeness.Known, stroke: likeness.Drawn) -> np.ndarray | None:
+    # The stroke is moved onto the part, so that what is left to find is the order of its points.
+    shift = likeness.outline(part.points, part.closed)[0] - likeness.outline(stroke.points, stroke.closed)[0]
+    for _, _, points in match([(part.closed, part.points, [])], [(stroke.closed, stroke.points + shift, [])]):
+        return points - shift
+    return None
 
 
 def _reference(part: Part, frame: int, mapper: Mapper) -> np.ndarray:
@@ -120,7 +195,7 @@ def match(
 
 
 _answers: list[tuple[object, dict, dict]] = []
-KEPT = 64
+KEPT = 256
 """Number of answers that are kept. A drawing is matched again whenever the contours are read, until its parts are written."""
 
 
@@ -182,6 +257,23 @@ def _check_names(found: Contours) -> None:
         if part.name in seen:
             raise Problem(f'Two parts are called "{part.name}": give one of them another name in the list of parts')
         seen.add(part.name)
+
+
+NAMED = 4
+"""Largest number of strokes that a message names."""
+
+
+def named(decisions: Decisions, frames: set[int] | None = None) -> tuple[str, str]:
+    """The matched strokes and the new parts by name, as texts; with `frames`, only those there. Empty where there are none."""
+    made = [(frame, part.name) for part in decisions.created for frame in sorted(part.keys)[:1]]
+    return _listing(decisions.taken, frames), _listing(made, frames)
+
+
+def _listing(entries: list[tuple[int, str]], frames: set[int] | None) -> str:
+    said = [f'"{name}" on {frame}' for frame, name in entries if frames is None or frame in frames]
+    if len(said) > NAMED:
+        said[NAMED:] = [f"{len(said) - NAMED} more"]
+    return ", ".join(said)
 
 
 def write(ob, found: Contours, decisions: Decisions) -> None:

@@ -359,6 +359,8 @@ def _ending(ob: bpy.types.Object, run: tracking.Run) -> Iterator[float]:
         else:
             _known.pop(run.uid, None)
             _messages.pop(run.uid, None)
+            if run.doubts:
+                _messages[run.uid] = run.doubts[0]
     except Changed:
         _due_again(run.uid, Why.AGAIN)
     except (Problem, RototoonError) as problem:

@@ -39,6 +39,10 @@ class Run:
     """By part the scene frames on which the artist moved the whole line since the last run."""
     entry: sessions.Entry
     worker: jobs.Worker
+    taken: str = ""
+    """What became of new strokes on tracked frames, for the message."""
+    doubts: tuple[str, ...] = ()
+    """New strokes that could be something else."""
 
 
 def contour_layers(ob) -> list:
@@ -61,7 +65,13 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
     threads = preferences.threads()
     worker = jobs.Worker(lambda progress: entry.session.track(preset, progress, threads=threads))
     moved = {p.name: reading.corrections[p.number].whole for p in reading.found.parts if reading.corrections[p.number].whole}
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, entry, worker)
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, entry, worker, *_of_new(reading.decisions))
+
+
+def _of_new(decisions: identity.Decisions) -> tuple[str, tuple[str, ...]]:
+    taken, created = identity.named(decisions, decisions.on_tracked)
+    said = f"; new strokes are keys of {taken}" if taken else ""
+    return said + (f"; new parts: {created}" if created else ""), tuple(decisions.doubts)
 
 
 def finish(ob, run: Run) -> int | None:

@@ -25,8 +25,12 @@ class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
         reading = document.read(ob)
         identity.write(ob, reading.found, reading.decisions)
         ob.data.update_tag()
+        decisions = reading.decisions
+        for doubt in decisions.doubts:
+            self.warn(doubt)
         self.warn(guard.left_out(layers, hidden=True))
-        return f"{counted(reading.decisions.matched, 'stroke')} matched, {counted(len(reading.decisions.created), 'new part')}"
+        counts = (f"{counted(decisions.matched, 'stroke')} matched", counted(len(decisions.created), "new part"))
+        return "; ".join(f"{count}: {names}" if names else count for count, names in zip(counts, identity.named(decisions), strict=True))
 
 
 CLASSES = (ROTOTOON_OT_match_contours,)

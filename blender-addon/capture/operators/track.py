@@ -48,11 +48,12 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
         if strokes is None:
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
         reset = set_back.note(self._ob, looks)
-        self.warn(reset)
+        for doubt in [reset, *self._tracking.doubts]:
+            self.warn(doubt)
         self.warn(tracking.where_to_look(self._ob, self._tracking))
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
-        moved = tracking.of_moved_lines(self._ob, self._tracking)
-        return tracking.told(self._tracking, strokes, bool(reset)) + moved + tracking.goes_on(self._ob, self._tracking)
+        told = tracking.told(self._tracking, strokes, bool(reset)) + self._tracking.taken
+        return told + tracking.of_moved_lines(self._ob, self._tracking) + tracking.goes_on(self._ob, self._tracking)
 
 
 def _match(progress, found: contours.Contours, mapper, number: int) -> None:
