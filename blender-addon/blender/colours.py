@@ -19,11 +19,19 @@ def palette(ob) -> np.ndarray:
 def of_strokes(ob, content: st.Content, materials: np.ndarray) -> np.ndarray:
     """The colour by which each stroke is recognised, sRGB (S, 3): the fill's colour of a filled stroke, the line's colour
     otherwise."""
+    return _mixed(content, materials, st.filled(ob, content) != 0)
+
+
+def of_lines(content: st.Content, materials: np.ndarray) -> np.ndarray:
+    """The colour of each stroke's line, sRGB (S, 3), whether it is filled or not."""
+    return _mixed(content, materials, np.zeros(len(content.sizes), bool))
+
+
+def _mixed(content: st.Content, materials: np.ndarray, filled: np.ndarray) -> np.ndarray:
     count = len(content.sizes)
     if not count:
         return np.zeros((0, 3))
     index = np.clip(content.strokes("material_index"), 0, len(materials) - 1)
-    filled = st.filled(ob, content) != 0
     base = materials[index, filled.astype(int), :3]
     mixed = np.zeros((count, 4))
     points = content.point.get("vertex_color")

@@ -12,6 +12,9 @@ NAME = "Line "
 FILL_NAME = "Line Fill "
 """Beginning of the names of materials of solid shapes. Before Blender 5.1 the material also says that they have no line."""
 
+BOTH_NAME = "Filled Line "
+"""Beginning of the names of materials of lines that are filled. The colours of line and fill follow."""
+
 
 def known(ob: bpy.types.Object, fill: bool = False) -> list[tuple[int, np.ndarray]]:
     """The object's materials of traced lines, or of solid shapes: index and colour (sRGB)."""
@@ -34,6 +37,26 @@ def make(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
         style.fill_color = style.color
         if not gp.FILL_BY_ID:
             style.show_stroke, style.show_fill = False, True
+    ob.data.materials.append(material)
+    return len(ob.data.materials) - 1
+
+
+def with_fill(ob: bpy.types.Object, line: np.ndarray, fill: np.ndarray, same: float) -> int:
+    """Index of the object's material for a line and its fill (sRGB, 0 to 1), within `same`. It is made if there is none."""
+    for place, material in enumerate(ob.data.materials):
+        style = material.grease_pencil if material is not None else None
+        if style is None or not material.name.startswith(BOTH_NAME) or not (gp.FILL_BY_ID or style.show_fill and style.show_stroke):
+            continue
+        own = [encoded(np.array(colour[:3], np.float64)) for colour in (style.color, style.fill_color)]
+        if max(np.abs(own[0] - line).max(), np.abs(own[1] - fill).max()) <= same:
+            return place
+    digits = ["".join(f"{round(255 * float(v)):02x}" for v in colour) for colour in (line, fill)]
+    material = bpy.data.materials.new(BOTH_NAME + " ".join(digits))
+    bpy.data.materials.create_gpencil_data(material)
+    style = material.grease_pencil
+    style.color, style.fill_color = (*to_linear(line), 1.0), (*to_linear(fill), 1.0)
+    if not gp.FILL_BY_ID:
+        style.show_stroke = style.show_fill = True
     ob.data.materials.append(material)
     return len(ob.data.materials) - 1
 

@@ -15,7 +15,7 @@ from ..blender import strokes as st
 from ..lines import tracing
 from .fields import wrong
 
-KNOWN = {"track", "points", "closed", "widths", "colour", "confidence", "fill", "opacity"}
+KNOWN = {"track", "points", "closed", "widths", "colour", "confidence", "fill", "fill_colour", "opacity"}
 """The fields of a stroke that become strokes of Blender."""
 
 
@@ -59,8 +59,14 @@ def _read(place: str, stroke: Any, numbered: bool) -> tracing.Placed:
     closed, fill = bool(stroke.get("closed")), stroke.get("fill", False)
     if not isinstance(fill, bool) or fill and not closed:
         raise wrong(f"{place}.fill", fill, "true or false, and true only for a closed stroke")
+    fill_colour = None
+    if stroke.get("fill_colour") is not None:
+        fill_colour = _numbers(f"{place}.fill_colour", stroke["fill_colour"])
+        if fill_colour.shape != (3,) or fill:
+            expected = "three numbers, and no fill: the colour of a filled shape without a line is its colour"
+            raise wrong(f"{place}.fill_colour", stroke["fill_colour"], expected)
     shares = [_share(place, name, stroke.get(name, 1.0)) for name in ("confidence", "opacity")]
-    return tracing.Placed(number, points, closed, widths, colour, shares[0], fill, shares[1])
+    return tracing.Placed(number, points, closed, widths, colour, shares[0], fill, shares[1], fill_colour=fill_colour)
 
 
 def _share(place: str, name: str, value: Any) -> float:
@@ -83,6 +89,7 @@ def written(ob, content: st.Content, mapping, palette) -> dict[int, dict[str, An
     """The fields of a drawing's strokes by index. Strokes with a point that has no place are left out."""
     seen, closed = colours.of_strokes(ob, content, palette), content.strokes("cyclic")
     radii, fills = content.point.get("radius"), st.solid(ob, content)
+    filled, inks = st.filled(ob, content) != 0, colours.of_lines(content, palette)
     found = {}
     for i, line in enumerate(stroke_lines.lines(content)):
         line = line[:-1] if closed[i] and len(line) > 2 and np.array_equal(line[0], line[-1]) else line
@@ -97,5 +104,7 @@ def written(ob, content: st.Content, mapping, palette) -> dict[int, dict[str, An
             # The length of a pixel in the layer's units, at each point.
             pixel = np.linalg.norm(mapping.to_layer(points + (1.0, 0.0)) - mapping.to_layer(points), axis=1)
             stroke["widths"] = (2 * own / np.maximum(pixel, 1e-12)).round(4).tolist()
-        stroke["colour"] = seen[i].clip(0, 1).round(4).tolist()
+        stroke["colour"] = (seen if fills[i] else inks)[i].clip(0, 1).round(4).tolist()
+        if filled[i] and not fills[i]:
+            stroke["fill_colour"] = seen[i].clip(0, 1).round(4).tolist()
     return found

@@ -104,8 +104,15 @@ def _known(ob, drawn: Strokes) -> dict[tuple[int, bool], int]:
     colours: dict[tuple[int, bool], list[np.ndarray]] = {}
     for stroke in (stroke for strokes in drawn.values() for stroke in strokes):
         colours.setdefault((stroke.number, stroke.fill), []).append(stroke.colour)
+    filled: set[int] = set()
     places = {key: looks.exact_material(ob, np.mean(each, axis=0), key[1], make=False) for key, each in colours.items()}
-    return {key: place for key, place in places.items() if place is not None}
+    found = {key: place for key, place in places.items() if place is not None}
+    for stroke in (stroke for strokes in drawn.values() for stroke in strokes if stroke.fill_colour is not None):
+        # One material for a stroke on all frames. It is the first frame's.
+        if stroke.number not in filled:
+            filled.add(stroke.number)
+            found[stroke.number, stroke.fill] = _material(ob, stroke.colour, stroke)
+    return found
 
 
 def _write_keys(ob, target, mapper: Mapper, keys: Strokes, followed: set[int], record: records.Layer) -> None:
@@ -127,9 +134,13 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     # Materials and fills go by numbers. Strokes without a number have colours of their own, so all get others meanwhile.
     own = [replace(stroke, number=i) for i, stroke in enumerate(strokes, 1)]
     colours = [inks.get((stroke.number, stroke.fill), stroke.colour) for stroke in strokes]
-    wanted = {(tuple(colour), stroke.fill): (colour, stroke.fill) for colour, stroke in zip(colours, strokes)}
-    places = {key: looks.exact_material(ob, *each) for key, each in wanted.items()}
-    materials = {(each.number, each.fill): places[tuple(colour), each.fill] for colour, each in zip(colours, own)}
+    places: dict[tuple, int] = {}
+    materials = {}
+    for colour, each in zip(colours, own):
+        key = tuple(colour), each.fill, None if each.fill_colour is None else tuple(each.fill_colour)
+        if key not in places:
+            places[key] = _material(ob, colour, each)
+        materials[each.number, each.fill] = places[key]
     rows = tracing.rows_of(frame, own, looks.Looks(), [], materials, mapper.at(0, frame))
     _tint(rows, strokes, colours)
     rows.values[gp.TRACK] = numbers
@@ -137,6 +148,12 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     if any(stroke.fields for stroke in strokes):
         rows.values[gp.FIELDS] = np.array([stroke.fields for stroke in strokes], np.int32)
     return rows
+
+
+def _material(ob, colour: np.ndarray, stroke: tracing.Placed) -> int:
+    if stroke.fill_colour is not None:
+        return looks.filled_material(ob, colour, stroke.fill_colour)
+    return looks.exact_material(ob, colour, stroke.fill)
 
 
 def _tint(rows: gp.Rows, strokes: list[tracing.Placed], inks: list[np.ndarray]) -> None:

@@ -151,6 +151,11 @@ def exact_material(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False,
     return line_materials.make(ob, np.nan_to_num(colour).clip(0, 1), fill) if make else None
 
 
+def filled_material(ob: bpy.types.Object, line: np.ndarray, fill: np.ndarray) -> int:
+    """Index of the object's material for a line and its fill, sRGB. It is made if there is none."""
+    return line_materials.with_fill(ob, *(np.nan_to_num(colour).clip(0, 1) for colour in (line, fill)), EXACT)
+
+
 def material(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
     """Index of the object's material for an ink, sRGB, or for a shape that is filled with it. It is made if none is near."""
     wanted = ink_lab(colour[None])[0]

@@ -108,6 +108,8 @@ class Placed:
     """Below 1 while it fades."""
     fields: int = 0
     """The number of its further fields in a document; 0 for none."""
+    fill_colour: np.ndarray | None = None
+    """The colour of the fill of a stroke that has a line too."""
 
     @property
     def place(self) -> tuple[bool, float, int]:
@@ -316,7 +318,7 @@ def rows_of(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[s
     if (sure < 1).any():
         # Without values every stroke is beyond doubt.
         rows.values[gp.CONFIDENCE] = np.repeat(sure, rows.sizes)
-    if gp.FILL_BY_ID and any(stroke.fill for stroke in strokes):
+    if gp.FILL_BY_ID and any(stroke.fill or stroke.fill_colour is not None for stroke in strokes):
         for name in ("fill_id", "hide_stroke"):
             rows.values.setdefault(name, gp.blank(name, count))
     if not count:
@@ -335,8 +337,8 @@ def _dress(rows: gp.Rows, frame: int, strokes: list[Placed], shown: looks.Looks,
         found = shown.around(stroke.number, frame)
         if found is None:
             rows.values["material_index"][i] = materials[stroke.number, stroke.fill]
-            if stroke.fill and gp.FILL_BY_ID:
-                rows.values["fill_id"][i], rows.values["hide_stroke"][i] = gp.FILL_BASE + stroke.number, True
+            if gp.FILL_BY_ID and (stroke.fill or stroke.fill_colour is not None):
+                rows.values["fill_id"][i], rows.values["hide_stroke"][i] = gp.FILL_BASE + stroke.number, stroke.fill
             continue
         for name in names:
             if gp.TYPES[name][1] == "POINT":

@@ -292,3 +292,52 @@ def test_bad_drawings_are_named(addon, film, pictures, tmp_path, fields, message
     with pytest.raises(RuntimeError, match=message):
         taken(tmp_path / "bad.json", pictures, **fields)
     assert len(bpy.data.objects) == before
+
+
+def test_strokes_with_a_line_and_a_fill_keep_both_colours(addon, film, tmp_path):
+    gp, ob = addon("blender.grease_pencil"), bpy.context.object
+    square = np.array([[20.0, 20], [60, 20], [60, 50], [20, 50]])
+    ls.put(addon, ob, "Lines", 1, [(square + 40 * k, True) for k in range(3)])
+    material = bpy.data.materials.new("both")
+    bpy.data.materials.create_gpencil_data(material)
+    style = material.grease_pencil
+    style.color, style.fill_color = (1, 0, 0, 1), (0, 1, 0, 1)
+    ob.data.materials.append(material)
+    handle = handle_of(addon, ob, "Lines", 1)
+    gp.put(handle, "material_index", np.full(3, len(ob.data.materials) - 1, np.int32))
+    if gp.FILL_BY_ID:
+        # A line, a line with a fill, a fill.
+        gp.put(handle, "fill_id", np.array([0, 1, 2], np.int32))
+        gp.put(handle, "hide_stroke", np.array([False, False, True]))
+    else:
+        style.show_stroke = style.show_fill = True
+    document, back = again(tmp_path / "both.json")
+    strokes = document["drawings"][0]["strokes"]
+    both = strokes[1]
+    assert both["colour"] == [1, 0, 0] and both["fill_colour"] == [0, 1, 0] and "fill" not in both and both["widths"]
+    if gp.FILL_BY_ID:
+        assert "fill_colour" not in strokes[0] and "fill_colour" not in strokes[2] and strokes[2]["fill"]
+        assert (attribute(addon, back, "Lines", 1, "fill_id") != 0).tolist() == [False, True, True]
+        assert attribute(addon, back, "Lines", 1, "hide_stroke").tolist() == [False, False, True]
+    material = back.data.materials[attribute(addon, back, "Lines", 1, "material_index")[1]].grease_pencil
+    assert tuple(material.color)[:3] == (1, 0, 0) and tuple(material.fill_color)[:3] == (0, 1, 0)
+    assert "strokes with a line and a fill, on 1" in said(addon).text
+
+
+def test_traced_strokes_of_a_document_keep_line_and_fill(addon, film, pictures, tmp_path):
+    gp = addon("blender.grease_pencil")
+    both = line(4, track=1, closed=True, colour=[0.2, 0, 0], fill_colour=[0, 0.6, 0])
+    ob = taken(tmp_path / "traced.json", pictures, traced=[{"frame": frame, "strokes": [line(0, track=0), both]} for frame in (1, 2)])
+    found = exported(tmp_path / "out.json")["traced"]
+    for each in found:
+        stroke = each["strokes"][1]
+        assert stroke["colour"] == pytest.approx([0.2, 0, 0], abs=1e-3) and stroke["fill_colour"] == pytest.approx([0, 0.6, 0], abs=1e-3)
+        assert "fill_colour" not in each["strokes"][0]
+    if gp.FILL_BY_ID:
+        assert (attribute(addon, ob, "Lines", 2, "fill_id") != 0).tolist() == [False, True]
+
+
+@pytest.mark.parametrize("change", [{"fill_colour": [1, 0]}, {"fill": True, "closed": True, "fill_colour": [1, 0, 0]}])
+def test_a_wrong_fill_colour_is_named(addon, film, pictures, tmp_path, change):
+    with pytest.raises(RuntimeError, match=r"drawings\[0\].strokes\[0\].fill_colour: found a list of|fill_colour: found \[1, 0"):
+        taken(tmp_path / "wrong.json", pictures, drawings=[{"frame": 1, "strokes": [line(0, **change)]}])
