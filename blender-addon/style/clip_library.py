@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import bpy
 import numpy as np
-from rototoon.style import KEY_POINTS, Skeleton, read_library, skeleton_of
+from rototoon.style import KEY_POINTS, Skeleton, add_to_library, read_library, skeleton_of
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
+from ..common.wording import counted
 from . import bodies
 
 ENDING = ".clip.json"
@@ -93,6 +95,32 @@ def read(folder: str) -> Shelf:
             rows.append(Row(file.removesuffix(ENDING), "", file=file, trouble=trouble))
     rows.sort(key=lambda row: (bool(row.trouble), row.character.lower(), row.motion.lower()))
     return Shelf(folder, rows, troubles)
+
+
+def add(folder: str, files: Sequence[tuple[dict[str, Any], str]], replace: bool) -> int:
+    """Adds files of clips, each with its source, to a library. Returns how many clips of the same character and motion they replaced.
+
+    Without `replace`, such a clip is a `Problem`, and nothing is added: it may be another shot's, or a colleague's.
+    """
+    there = {(entry["character"], entry["motion"]): entry for entry in read_library(folder, read=False).entries}
+    names = [(clip["character"], clip["motion"]) for clips, _ in files for clip in clips["clips"]]
+    taken = [name for name in names if name in there]
+    if taken and not replace:
+        entry = there[taken[0]]
+        more = f" and {len(taken) - 1} more of these clips" if len(taken) > 1 else ""
+        source = f", from {entry['source']}" if entry["source"] else ""
+        raise Problem(
+            f'The library {folder} has "{entry["motion"]}" by "{entry["character"]}"{more} already ({entry["file"]}, '
+            f"{counted(entry['frames'], 'frame')}{source}): choose another name of the character or the motion, or Replace"
+        )
+    for clips, source in files:
+        add_to_library(folder, clips, source)
+    return len(taken)
+
+
+def replaced(count: int) -> str:
+    """The end of a message about clips that were replaced; empty if there are none."""
+    return f"; replaced {counted(count, 'clip')} of the same character and motion" if count else ""
 
 
 def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:

@@ -74,6 +74,16 @@ _SHARED = {
         bpy.props.StringProperty,
         {"name": "Motion", "description": "Name of the motion", "default": "walk"},
     ),
+    "replace": (
+        bpy.props.BoolProperty,
+        {
+            "name": "Replace",
+            "description": "Replace a clip of the same character and motion in the library. Otherwise nothing is saved where there is one",
+            "default": False,
+            # What was chosen once must not replace a clip without being chosen again.
+            "options": {"SKIP_SAVE"},
+        },
+    ),
     "first": (
         bpy.props.IntProperty,
         {"name": "First", "description": "First frame of the clip, in scene frames", "default": 0},

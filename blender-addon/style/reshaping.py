@@ -2,6 +2,10 @@
 
 The drawing does not change. The motion begins on the frame after it, on generated frames, which Clear Generated removes. Strokes
 keep the radius, colours, material and fill of the drawing.
+
+A contour that the artist corrected on a generated frame stays as it is there, as with Track. All its points become pins, since the rest of
+another clip's contour would not fit those that were moved. Release Pins lets it follow again. One on a frame that the clip does not reach
+stays too. Those that only were tracked go.
 """
 
 from __future__ import annotations
@@ -16,7 +20,7 @@ from rototoon import documents
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement
 from ..blender.errors import Problem
-from ..capture import document, identity, writing
+from ..capture import corrections, document, identity, writing
 from . import limbs
 
 
@@ -54,8 +58,9 @@ def begin(ob, frame: int) -> Drawing:
     return Drawing(ob.session_uid, reading.document, project, rest)
 
 
-def finish(ob, drawing: Drawing, made) -> int:
-    """Writes the result, on hidden layers too, not on locked ones. Returns the number of frames."""
+def finish(ob, drawing: Drawing, made) -> tuple[int, dict[str, list[int]]]:
+    """Writes the result, on hidden layers too, not on locked ones. Returns the number of frames, and by part those on which the artist's
+    corrections stay."""
     guard.need(ob)
     reading = document.read(ob)
     if reading.document != drawing.inputs:
@@ -63,10 +68,11 @@ def finish(ob, drawing: Drawing, made) -> int:
     identity.write(ob, reading.found, reading.decisions)
     reading = document.read(ob)
     tracks, frames = _tracks(reading, drawing, made.document)
-    names = reading.found.layer_names
+    names, kept = reading.found.layer_names, _kept(reading, drawing.frame)
     if not reading.mapper.still:
         points = {index: _drawn(reading, index) for index in range(len(names))}
-        reading.mapper = placement.Mapper(ob, [drawing.frame, *frames], points, names)
+        reading.mapper = placement.Mapper(ob, {drawing.frame, *frames, *(f for own in kept.values() for f in own.pins)}, points, names)
+    _hold(tracks, kept, reading)
     by_number = {part.number: copy.copy(part) for part in reading.found.parts}
     for part in by_number.values():
         # Styles come from the drawing only.
@@ -76,12 +82,43 @@ def finish(ob, drawing: Drawing, made) -> int:
     for index, name in enumerate(names):
         if index in reading.found.closed:
             continue
-        block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, {})
+        block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, kept)
         block.order = _order(block, index, parts, tracks, made.document)
         layer = gp.find_layer(ob, name)
         writing.write(layer, block, list(gp.drawings(layer)))
     ob.data.update_tag()
-    return len(frames)
+    names_of = {part.number: part.name for part in reading.found.parts}
+    return len(frames), {names_of[number]: sorted(each.pins) for number, each in kept.items() if each.pins}
+
+
+def _kept(reading: document.Reading, rest: int) -> dict[int, corrections.Corrections]:
+    """By part the contours that the artist corrected on generated frames after the drawing, with all their points as pins."""
+    corrected = {place: drawing.corrected() for place, drawing in reading.found.drawings.items()}
+    found = {}
+    for part in reading.found.parts:
+        own = found[part.number] = corrections.Corrections()
+        for frame, stroke in part.made.items():
+            if frame > rest and stroke.layer not in reading.found.closed and corrected[stroke.layer, frame][stroke.index]:
+                points = reading.mapper.at(stroke.layer, frame).to_pixels(stroke.points)
+                own.pins[frame], own.held[frame] = dict(enumerate(points)), stroke.points
+    return found
+
+
+def _hold(tracks: dict[int, writing.Track], kept: dict[int, corrections.Corrections], reading: document.Reading) -> None:
+    """Gives tracks the frames on which a corrected contour stays, also those that the clip does not reach."""
+    for number, own in kept.items():
+        track = tracks.get(number)
+        known = set() if track is None else set(track.frames.tolist())
+        beyond = sorted(own.pins.keys() - known)
+        if not beyond:
+            continue
+        points = np.stack([np.stack(list(own.pins[frame].values())) for frame in beyond])
+        frames, sure = np.array(beyond), np.ones(points.shape[:2])
+        if track is not None:
+            frames = np.concatenate([track.frames, frames])
+            points, sure = np.concatenate([track.points, points]), np.concatenate([track.confidence, sure])
+        order = np.argsort(frames)
+        tracks[number] = writing.Track(frames[order], points[order], sure[order])
 
 
 def _order(block: writing.Block, layer: int, parts, tracks, project: dict[str, Any]) -> np.ndarray:

@@ -179,7 +179,7 @@ def test_bones_follow_a_clip_and_give_it_back(addon, tmp_path):
         ob.pose.bones["thigh.R"].rotation_mode = "AXIS_ANGLE"
         settings = {"content": "boy", "motion": "walk", "folder": str(shelf), "view": view, "start": 10}
         assert bpy.ops.rototoon.drive_bones(**settings) == {"FINISHED"}
-        settings = {"character": "rig", "motion": "walk", "folder": str(shelf), "view": view, "first": 10, "last": 17}
+        settings = {"character": "rig", "motion": "walk", "folder": str(shelf), "view": view, "first": 10, "last": 17, "replace": view != "FRONT" or turned > 0}
         assert bpy.ops.rototoon.save_clip_from_armature(**settings) == {"FINISHED"}
         found = saved(addon, shelf, "rig")
         # The spine is three bones with a bend, and its first one carries the legs: near, not the same.

@@ -187,3 +187,51 @@ def test_marks_are_kept_with_the_document(addon, tmp_path):
     assert addon("style.limbs").marks(ob) == [{"front": names[1], "behind": names[2]}]
     with pytest.raises(RuntimeError, match='No part "hat"; the object has'):
         bpy.ops.rototoon.depth_mark(front="hat", behind=names[1])
+
+
+def test_a_clip_of_the_same_name_is_only_replaced_on_request(addon, tmp_path):
+    shelf, scripting = tmp_path / "clips", addon("scripting")
+    performer(addon, tmp_path)
+    save = {"character": "me", "motion": "walk", "folder": str(shelf)}
+    assert bpy.ops.rototoon.save_clip(**save) == {"FINISHED"}
+    before = {path.name: path.read_bytes() for path in shelf.iterdir()}
+    other = tmp_path / "other"
+    other.mkdir()
+    performer(addon, other, 0.3)
+    with pytest.raises(RuntimeError, match=r'has "walk" by "me" already \(me-walk.clip.json, 9 frames\): choose another name .* or Replace'):
+        bpy.ops.rototoon.save_clip(**save)
+    assert {path.name: path.read_bytes() for path in shelf.iterdir()} == before
+    scripting.take_reports()
+    assert bpy.ops.rototoon.save_clip(**save, replace=True) == {"FINISHED"}
+    assert scripting.take_reports()[-1].text.endswith("; replaced 1 clip of the same character and motion")
+    assert (shelf / "me-walk.clip.json").read_bytes() != before["me-walk.clip.json"]
+    assert not bpy.context.window_manager.operator_properties_last("rototoon.save_clip").replace, "it is asked for each time"
+
+
+def test_reshaping_again_leaves_corrected_contours(addon, tmp_path):
+    shelf, scripting = str(tmp_path / "clips"), addon("scripting")
+    for motion, swing in (("walk", 0.6), ("wave", 1.0)):
+        folder = tmp_path / motion
+        folder.mkdir()
+        performer(addon, folder, swing)
+        bpy.ops.rototoon.save_clip(character="plain", motion=motion, folder=shelf)
+    folder = tmp_path / "doll"
+    folder.mkdir()
+    ob = shots.set_up(folder)
+    shots.draw(addon, ob, 1, figure())
+    shots.limb_lines(addon, ob, figure(), LINES)
+    ob.rototoon.clips_folder = shelf
+    bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk")
+    shots.move(addon, ob, 5, 3, (6.0, -3.0), which=[3])
+    mine, others = dict(shots.pixels(addon, ob, 5)), dict(shots.pixels(addon, ob, 4))
+    scripting.take_reports()
+    for motion in ("walk", "wave"):
+        bpy.ops.rototoon.reshape_drawing(character="plain", motion=motion)
+        report = scripting.take_reports()[-1]
+        assert report.kind == "WARNING" and 'your corrections stay: "Part 3" on 5; Release Pins' in report.text
+        assert np.array_equal(dict(shots.pixels(addon, ob, 5))[3], mine[3])
+    assert np.abs(dict(shots.pixels(addon, ob, 4))[3] - others[3]).max() > 1, "other frames follow the other clip"
+    bpy.ops.rototoon.release_pins(which="ALL")
+    bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk")
+    assert np.abs(dict(shots.pixels(addon, ob, 5))[3] - mine[3]).max() > 1
+    assert "corrections" not in scripting.take_reports()[-1].text

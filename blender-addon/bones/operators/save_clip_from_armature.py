@@ -1,12 +1,11 @@
 """Save Clip from Armature: adds the motion of bones to the library."""
 
 import bpy
-from rototoon.style import add_to_library
 
 from ...blender import armatures, guard
 from ...common import jobs
 from ...common.operators import Long, OnArmature
-from ...style import clip_browser
+from ...style import clip_browser, clip_library
 from ...style.clip_library import folder_of
 from ...style.clip_properties import Performance, shared
 from .. import key_points
@@ -23,6 +22,7 @@ class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.typ
         "last", description="Last frame. If it is not after the first frame, the frames of the action"
     )
     view: bpy.props.EnumProperty(name="Seen From", description="Side from which the bones are seen", items=armatures.VIEWS)
+    replace: shared("replace")
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -43,9 +43,9 @@ class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.typ
         render = context.scene.render
         character = self.character or self._ob.name
         made = key_points.clips(character, self.motion, render.fps / render.fps_base, self._postures)
-        add_to_library(self._folder, made, bpy.path.basename(bpy.data.filepath))
+        replaced = clip_library.add(self._folder, [(made, bpy.path.basename(bpy.data.filepath))], self.replace)
         clip_browser.refresh(self._folder)
-        return f'"{self.motion}" by "{character}", {len(self._postures)} frames'
+        return f'"{self.motion}" by "{character}", {len(self._postures)} frames{clip_library.replaced(replaced)}'
 
 
 CLASSES = (ROTOTOON_OT_save_clip_from_armature,)

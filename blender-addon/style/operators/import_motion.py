@@ -4,12 +4,12 @@ import os
 
 import bpy
 from rototoon import RototoonError
-from rototoon.style import add_to_library, import_motion
+from rototoon.style import import_motion
 
 from ...blender.errors import Problem
 from ...common.operators import Guarded
 from ...common.wording import counted
-from .. import clip_browser
+from .. import clip_browser, clip_library
 from ..clip_library import folder_of
 from ..clip_properties import shared
 
@@ -54,6 +54,7 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
         description="The pelvis travels through the picture, so that feet can stand still. Otherwise it stays in its place",
         default=True,
     )
+    replace: shared("replace")
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -68,19 +69,19 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
         row.active = self.view == "angle"
         row.prop(self, "angle")
         self.layout.prop(self, "way")
+        self.layout.prop(self, "replace")
 
     def run(self, context) -> str:
         folder = folder_of(context.object if hasattr(context.object, "rototoon") else None, self.folder)
         paths = self._paths()
         # All files are read before any is added. So an error leaves the library as it was.
         made = [(path, self._clip(path, len(paths) == 1)) for path in paths]
-        for path, clips in made:
-            add_to_library(folder, clips, os.path.basename(path))
+        replaced = clip_library.add(folder, [(clips, os.path.basename(path)) for path, clips in made], self.replace)
         clip_browser.refresh(folder)
         clips = [file["clips"][0] for _, file in made]
         if len(clips) == 1:
-            return f'"{clips[0]["motion"]}" by "{clips[0]["character"]}", {counted(len(clips[0]["points"]), "frame")}'
-        return counted(len(clips), "clip")
+            return f'"{clips[0]["motion"]}" by "{clips[0]["character"]}", {counted(len(clips[0]["points"]), "frame")}' + clip_library.replaced(replaced)
+        return counted(len(clips), "clip") + clip_library.replaced(replaced)
 
     def _paths(self) -> list[str]:
         folder = bpy.path.abspath(self.directory)

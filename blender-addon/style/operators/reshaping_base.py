@@ -8,6 +8,7 @@ from ...blender.errors import Problem
 from ...capture import tracking
 from ...common import jobs
 from ...common.operators import Long, OnContours
+from ...common.wording import listed
 from .. import reshaping
 from ..clip_properties import shared
 
@@ -68,7 +69,9 @@ class Reshaping(OnContours, Long):
         """Writes the frames."""
         layers = tracking.contour_layers(self._ob)
         guard.need_some(layers, hidden=True)
-        frames = reshaping.finish(self._ob, self._drawing, work.result)
+        frames, kept = reshaping.finish(self._ob, self._drawing, work.result)
+        said = ", ".join(f'"{part}" on {listed(on)}' for part, on in kept.items())
+        self.warn(f"your corrections stay: {said}; Release Pins lets them follow the clip" if said else "")
         self.warn(guard.left_out(layers, hidden=True))
         self.warn(unmoved(work.result.still))
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)

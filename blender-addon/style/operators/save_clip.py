@@ -1,13 +1,13 @@
 """Save Clip: adds the motion of contours to the library."""
 
 import bpy
-from rototoon.style import add_to_library, capture_clip
+from rototoon.style import capture_clip
 
 from ...blender import guard
 from ...capture import document
 from ...common.operators import Guarded, OnContours
 from ...common.wording import counted
-from .. import clip_browser, limbs
+from .. import clip_browser, clip_library, limbs
 from ..clip_library import folder_of
 from ..clip_properties import Performance, shared
 
@@ -20,6 +20,7 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
     changes = guard.NOTHING
 
     last: shared("last")
+    replace: shared("replace")
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -36,11 +37,11 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
         character, offset = self.character or ob.name, ob.rototoon.frame_offset
         frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
         made = capture_clip(project, character, self.motion, *frames)
-        add_to_library(folder, made.clips, bpy.path.basename(bpy.data.filepath))
+        replaced = clip_library.add(folder, [(made.clips, bpy.path.basename(bpy.data.filepath))], self.replace)
         clip_browser.refresh(folder)
         count = len(made.clips["clips"][0]["points"])
         guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
-        return f'"{self.motion}" by "{character}", {counted(count, "frame")}{guessed}'
+        return f'"{self.motion}" by "{character}", {counted(count, "frame")}{guessed}{clip_library.replaced(replaced)}'
 
 
 CLASSES = (ROTOTOON_OT_save_clip,)
