@@ -18,6 +18,10 @@ import numpy as np
 from .errors import Problem
 
 
+MADE = "rototoon_layers"
+"""Property of masks that were made here: the names of their layers, one a line."""
+
+
 @dataclass(frozen=True)
 class Outline:
     """A part's contour on its frames, with the same number of points on each."""
@@ -33,13 +37,28 @@ def to_mask(pixels: np.ndarray, width: int, height: int) -> np.ndarray:
     return (pixels - (width / 2, height / 2)) * (1, -1) / max(width, height) + 0.5
 
 
+def need_made(name: str) -> None:
+    """Raises a `Problem` if there is a mask of this name that was not made here, or that has layers that were not."""
+    mask = bpy.data.masks.get(name)
+    if mask is None or not len(mask.layers):
+        return
+    made = mask.get(MADE)
+    own = [layer.name for layer in mask.layers] if made is None else [n for n in mask.layers.keys() if n not in str(made).split("\n")]
+    if own:
+        layers = ", ".join(f'"{layer}"' for layer in own[:3]) + (f" and {len(own) - 3} more" if len(own) > 3 else "")
+        raise Problem(
+            f'The mask "{name}" has layers that Contours to Mask did not make ({layers}): rename that mask, or choose another name in Mask'
+        )
+
+
 def write(context, name: str, parts: list[Outline], width: int, height: int) -> bpy.types.Mask:
-    """Makes the mask `name`. A mask of this name is replaced."""
+    """Makes the mask `name`. A mask of this name is replaced: see `need_made`."""
     mask = bpy.data.masks.get(name) or bpy.data.masks.new(name)
     mask.layers.clear()
     mask.animation_data_clear()
     for part in parts:
         _layer(mask, part)
+    mask[MADE] = "\n".join(layer.name for layer in mask.layers)
     every = sorted({frame for part in parts for frame in part.frames})
     mask.frame_start, mask.frame_end = every[0], every[-1]
     current = context.scene.frame_current

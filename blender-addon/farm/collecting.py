@@ -32,6 +32,8 @@ from . import batch
 RECORD = "batch.json"
 SAME = 0.01
 """Pixels. Points that differ by less are the same: an object's points have single precision."""
+MOST_FILES = 3
+"""Greatest number of files that a message names."""
 _DOCUMENTS = {"track", "snap", "trace", "fill", "tween"}
 """The steps that write a document."""
 
@@ -80,6 +82,20 @@ def results_of(folder: str, path: str) -> list[Result]:
             lines = _lines_of(entry, f"{place / batch.SENT}: shots[{index}].lines")
             found.append(replace(_result(place / batch.RESULTS / str(entry.get("shot")), entry), lines=lines))
     return found
+
+
+def not_sent(folder: str, path: str) -> Problem:
+    """The error for a file without a shot in a batch. It names the files that were sent."""
+    place = Path(folder)
+    place = place if (place / batch.SENT).exists() else place.parent
+    sent = sorted({os.path.basename(entry["blend"]) for entry in batch.read_sent(place / batch.SENT)["shots"] if entry.get("blend")})
+    if not sent:
+        return Problem(f"{place / batch.SENT} has no shot: send the file to the farm again")
+    names = " and ".join(f'"{name}"' for name in sent[:MOST_FILES]) + (f" and {len(sent) - MOST_FILES} more" if len(sent) > MOST_FILES else "")
+    return Problem(
+        f'The batch has no shot of "{os.path.basename(path)}"; {names} {"was" if len(sent) == 1 else "were"} sent. Open that file, or, if this is a '
+        f'later version of it, give its name in Sent From: "{sent[0]}"'
+    )
 
 
 def _lines_of(entry: Mapping[str, Any], place: str) -> dict[str, Any] | None:

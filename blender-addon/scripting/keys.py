@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Mapping
 from typing import Any
 
@@ -36,12 +37,13 @@ def set_key(
 
     New parts are drawn on `layer`, one of the contour layers; by default on the settings' contour layer, which is made if there is
     none. Known parts stay on their layer. A generated contour on the frame becomes the key. A key of the artist is only replaced
-    with `replace`. `radius` is that of the points in Blender's unit, `material` the index in the object's list.
+    with `replace`. The frame must be one of the footage. `radius` is that of the points in Blender's unit, `material` the index in the object's list.
     """
     need(ob, OnDrawing)
     placement.view_of(ob)
+    frame = _frame(ob, frame)
     name = layer or ob.rototoon.contours_layer
-    wanted = {part: _points(part, points) for part, points in polygons.items()}
+    wanted = {_name(part): _points(part, points) for part, points in polygons.items()}
     found = contours.read(ob)
     known = {part.name: part for part in found.parts}
     places = {part: _place(found, known.get(part), name) for part in wanted}
@@ -81,6 +83,24 @@ def _on_layers(ob: bpy.types.Object, name: str, frame: int, wanted, places: dict
         if is_new:
             gp.remove_layer(ob, layer)
         raise
+
+
+def _frame(ob: bpy.types.Object, frame: Any) -> int:
+    settings = ob.rototoon
+    first, last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
+    try:
+        whole = operator.index(frame)
+    except TypeError:
+        raise Problem(f"frame: found {frame!r}, expected a whole number from {first} to {last}") from None
+    if settings.pattern and not first <= whole <= last:
+        raise Problem(f"frame: found {whole}, expected a frame of the footage, from {first} to {last}")
+    return whole
+
+
+def _name(part: Any) -> str:
+    if not isinstance(part, str) or not part.strip():
+        raise Problem(f"polygons: found {part!r}, expected the name of a part")
+    return part
 
 
 def _points(part: str, points: Any) -> np.ndarray:

@@ -145,6 +145,23 @@ def _file_of(folder: str, trouble: str) -> str:
     return next((file for file in files if file.endswith(ENDING) and file in trouble), "")
 
 
+def clip_of(folder: str, character: str, motion: str) -> tuple[dict[str, Any], dict[str, str]]:
+    """The clips of a library, and the options that choose one of them. Raises a `Problem` that names what is missing."""
+    clips = clips_of(folder)
+    names = [(clip["character"], clip["motion"]) for clip in clips["clips"]]
+    if (character, motion) in names:
+        return clips, {"character": character, "motion": motion}
+    mine = sorted({own for who, own in names if who == character})
+    others = sorted({who for who, own in names if own == motion})
+    has = f'"{character}" has {_quoted(mine)}' if mine else f'{_quoted(others)} {"has" if len(others) == 1 else "have"} it' if others else ""
+    raise Problem(f'The library {folder} has no clip "{motion}" by "{character}"{f"; {has}" if has else ""}: choose one of its {counted(len(names), "clip")}')
+
+
+def _quoted(names: list[str], most: int = 4) -> str:
+    said = [f'"{name}"' for name in names[:most]]
+    return ", ".join(said + ([f"{len(names) - most} more"] if len(names) > most else []))
+
+
 def clips_of(folder: str) -> dict[str, Any]:
     """All clips of a library as a file of clips. Raises a `Problem` if there are none."""
     found = read_library(folder)

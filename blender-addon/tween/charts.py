@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from ..blender.errors import Problem
+from ..common.wording import counted
 
 SPACINGS = (
     (
@@ -88,6 +89,17 @@ class Choices:
             times = [(k + 1) / (len(shares) + 1) for k in range(len(shares))]
         return {"curve": [[time, share] for time, share in zip(times, shares)]}
 
+    def need_chart(self, first: int, last: int) -> None:
+        """Raises a `Problem` if the chart has not one percentage for each drawing between two keys."""
+        wanted = len(self.frames(first, last))
+        if self.spacing != "CHART" or not wanted:
+            return
+        found = len(percentages(self.chart))
+        if found != wanted:
+            raise Problem(
+                f"The chart has {counted(found, 'percentage')}, expected {wanted}, one for each drawing between the keys on {first} and {last}"
+            )
+
     def shared(self) -> dict[str, Any]:
         """The options of the library that all spans of a call have in common. Leaving the picture also needs its size: see
         `Sheet.leaving`."""
@@ -114,6 +126,10 @@ def places(text: str) -> tuple[tuple[float, float], ...]:
         if found and found[-1][0] >= time:
             raise Problem(f"The curve has {time:g} after {found[-1][0]:g}, expected times that rise")
         found.append((time, share))
+    if len(found) == 1 and found[0][0] in (0, 1):
+        # The two keys are the ends of every curve, so this one would be a straight line.
+        time, share = found[0]
+        raise Problem(f"The curve has only {time:g} {share:g}, expected a place between the keys or two places, such as 0 0, 0.3 0.8, 1 1")
     return tuple(found)
 
 

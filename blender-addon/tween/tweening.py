@@ -48,6 +48,8 @@ class Plan:
     """Number of chosen spans with a blank key."""
     again: bool = False
     """Whether spans that are up to date are drawn too."""
+    stepped: set[tuple[int, int, int]] = field(default_factory=set)
+    """Chosen spans that have frames between their keys, but none by their step: first and last frame, and the step."""
 
 
 def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
@@ -89,6 +91,7 @@ def _plan_group(
     for run in _runs(found):
         number = {(run[k], run[k + 1]): k for k in range(len(run) - 1)}
         mine = {number[span]: choices for span, choices in wanted.items() if span in number}
+        result.stepped |= {(run[k], run[k + 1], c.step) for k, c in mine.items() if run[k + 1] - run[k] > 1 and not c.frames(run[k], run[k + 1])}
         mine = {k: choices for k, choices in mine.items() if choices.frames(run[k], run[k + 1])}
         if not mine:
             continue
@@ -331,4 +334,9 @@ def nothing_to_draw(result: Plan) -> Problem:
     """The error for a plan without spans."""
     if result.blank:
         return Problem("The drawing at one end is blank, so there is nothing to draw between")
+    if result.stepped:
+        first, last, step = max(result.stepped, key=lambda span: (span[1] - span[0], -span[0]))
+        return Problem(
+            f"Frames Each is {step}, so no drawing lies between the keys on {first} and {last}: choose {last - first - 1} or less"
+        )
     return Problem("No frames between two keys here: go between two keys that lie apart, or choose other frames or layers")

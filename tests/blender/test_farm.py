@@ -236,7 +236,7 @@ def test_shots_without_a_result_are_named(addon, sent, tmp_path):
     with pytest.raises(RuntimeError, match="no result yet"):
         collect(tmp_path)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "another.blend"))
-    with pytest.raises(RuntimeError, match="no shot in the batch"):
+    with pytest.raises(RuntimeError, match="The batch has no shot of"):
         collect(tmp_path)
     with pytest.raises(RuntimeError, match="Choose the folder"):
         bpy.ops.rototoon.collect_results()
@@ -285,3 +285,33 @@ def test_the_job_files_are_those_of_the_command(addon, sent, tmp_path):
         if engine == "opencue":
             mine = mine.replace('NAME = "rototoon_farm"', 'NAME = "rototoon_manifest"')
         assert mine == its
+
+
+def test_a_later_version_of_the_file_is_told_which_file_was_sent_and_can_take_its_results(addon, sent, tmp_path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / f"{DAY}_v002.blend"))
+    before = shots.snapshot(sent)
+    told = r'no shot of "shot_v002.blend"; "shot.blend" was sent. Open that file, or, .* later version of it, give its name in Sent From: "shot.blend"'
+    with pytest.raises(RuntimeError, match=told):
+        collect(tmp_path)
+    assert shots.snapshot(sent) == before
+    bpy.ops.rototoon.collect_results(directory=str(tmp_path / "farm"), sent_from="shot.blend")
+    assert "14 contours taken into 1 object" in last_report(addon).text
+
+
+def test_a_collection_that_took_nothing_says_so_and_why(addon, sent, tmp_path):
+    for part in (1, 2):
+        shots.move(addon, sent, 9, part, (5.0, 0.0))
+    collect(tmp_path)
+    report = last_report(addon)
+    assert report.kind == "WARNING" and report.text.startswith(f'Nothing was taken into "{sent.name}"')
+    assert "was changed since it was sent" in report.text and "0 contours" not in report.text
+
+
+def test_a_result_without_tracks_is_named(addon, sent, tmp_path):
+    path = tmp_path / f"farm/results/{DAY}_{sent.name}/tracked.json"
+    document = json.loads(path.read_text())
+    for part in document["parts"]:
+        part.pop("tracks")
+    path.write_text(json.dumps(document))
+    collect(tmp_path)
+    assert "the results have no contour beside your keys" in last_report(addon).text

@@ -206,3 +206,19 @@ def test_lines_that_were_fitted_or_cut_after_snapping_follow_the_control_points(
     assert report.kind == "WARNING" and "fitted or cut since, on 5 and 7; Snap to Ink makes them anew" in report.text
     bpy.ops.rototoon.snap()
     assert len(document.read(ob, results=True).document["parts"][0]["curves"]) == 9
+
+
+def test_a_mask_that_was_made_by_hand_is_never_replaced(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    mine = bpy.data.masks.new(ob.name)
+    mine.layers.new(name="garbage").splines.new()
+    with pytest.raises(RuntimeError, match=r'did not make \("garbage"\): rename that mask, or choose another name in Mask'):
+        bpy.ops.rototoon.contours_to_mask()
+    assert [layer.name for layer in mine.layers] == ["garbage"] and len(mine.layers[0].splines) == 1
+    assert bpy.ops.rototoon.contours_to_mask(name="roto") == {"FINISHED"}
+    # Nor a layer that was added to one that was made here.
+    bpy.data.masks["roto"].layers.new(name="holdout")
+    with pytest.raises(RuntimeError, match=r'The mask "roto" has layers that Contours to Mask did not make \("holdout"\)'):
+        bpy.ops.rototoon.contours_to_mask(name="roto")
+    assert "holdout" in bpy.data.masks["roto"].layers

@@ -193,3 +193,24 @@ def test_every_function_is_documented_and_typed(scripting):
         if inspect.isfunction(found):
             function = inspect.unwrap(found)
             assert set(typing.get_type_hints(function)) == {*inspect.signature(function).parameters, "return"}, name
+
+
+@pytest.mark.parametrize(
+    ("frame", "name", "text"),
+    [
+        (101.5, "a", "frame: found 101.5, expected a whole number from 1 to 9"),
+        ("x", "a", "frame: found 'x', expected a whole number from 1 to 9"),
+        (None, "a", "frame: found None, expected a whole number"),
+        (500, "a", "frame: found 500, expected a frame of the footage, from 1 to 9"),
+        (0, "a", "frame: found 0, expected a frame of the footage, from 1 to 9"),
+        (1, "", "polygons: found '', expected the name of a part"),
+        (1, 3, "polygons: found 3, expected the name of a part"),
+    ],
+)
+def test_a_bad_frame_or_part_of_a_key_is_named(addon, fake, scripting, ob, frame, name, text):
+    before = shots.snapshot(ob)
+    with pytest.raises(RuntimeError) as error:
+        scripting.set_key(ob, frame, {name: shots.square(0)})
+    assert str(error.value).startswith(text)
+    assert shots.snapshot(ob) == before
+    scripting.set_key(ob, np.int64(1), {"a": shots.square(0)})

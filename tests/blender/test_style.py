@@ -235,3 +235,21 @@ def test_reshaping_again_leaves_corrected_contours(addon, tmp_path):
     bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk")
     assert np.abs(dict(shots.pixels(addon, ob, 5))[3] - mine[3]).max() > 1
     assert "corrections" not in scripting.take_reports()[-1].text
+
+
+def test_a_clip_that_is_not_there_is_named_with_those_that_are(addon, tmp_path):
+    shelf = str(tmp_path / "clips")
+    performer(addon, tmp_path)
+    bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf)
+    folder = tmp_path / "doll"
+    folder.mkdir()
+    ob = shots.set_up(folder)
+    shots.draw(addon, ob, 1, figure())
+    shots.limb_lines(addon, ob, figure(), LINES)
+    for character, motion, text in (
+        ("old", "walk", 'has no clip "walk" by "old"; "plain" has it: choose one of its 1 clip'),
+        ("plain", "run", 'has no clip "run" by "plain"; "plain" has "walk"'),
+        ("old", "run", 'has no clip "run" by "old": choose one'),
+    ):
+        with pytest.raises(RuntimeError, match=text):
+            bpy.ops.rototoon.reshape_drawing(character=character, motion=motion, folder=shelf)

@@ -470,3 +470,43 @@ def test_everything_is_one_undo_step(addon):
     bpy.ops.ed.undo()
     ob = bpy.data.objects["Drawing"]
     assert sorted(frames(addon, ob)) == [1, 9] and "rototoon_tween" not in ob.data
+
+
+@pytest.mark.parametrize("chart", ["10, 30", "1 2 3 4 5 6 7 8"])
+def test_a_chart_of_the_wrong_length_is_refused(addon, chart):
+    ob = keyed(addon, (1, 9, 17))
+    count = len(chart.replace(",", " ").split())
+    with pytest.raises(RuntimeError, match=f"The chart has {count} percentages, expected 7, one for each drawing between the keys on 1 and 9"):
+        bpy.ops.rototoon.in_between(frames="ALL", spacing="CHART", chart=chart)
+    assert sorted(frames(addon, ob)) == [1, 9, 17]
+    bpy.ops.rototoon.in_between(frames="ALL", spacing="CHART", chart="10, 30, 70", step=2)
+    assert sorted(frames(addon, ob)) == list(range(1, 18, 2))
+
+
+@pytest.mark.parametrize("curve", ["0 0", "1 1", "0 0.5"])
+def test_a_curve_of_one_end_is_refused(addon, curve):
+    ob = keyed(addon)
+    with pytest.raises(RuntimeError, match=f"The curve has only {curve}, expected a place between the keys or two places"):
+        bpy.ops.rototoon.in_between(spacing="CURVE", curve=curve)
+    assert sorted(frames(addon, ob)) == [1, 9]
+    assert bpy.ops.rototoon.in_between(spacing="CURVE", curve="0.3 0.8") == {"FINISHED"}
+
+
+def test_a_step_that_is_too_large_is_named(addon):
+    keyed(addon)
+    with pytest.raises(RuntimeError, match="Frames Each is 100, so no drawing lies between the keys on 1 and 9: choose 7 or less"):
+        bpy.ops.rototoon.in_between(frames="ALL", step=100)
+    bpy.ops.rototoon.in_between(frames="ALL", step=7)
+
+
+def test_in_betweens_whose_last_key_was_removed_are_named(addon):
+    ob, scripting = keyed(addon, (1, 9, 17)), addon("scripting")
+    bpy.ops.rototoon.in_between(frames="ALL")
+    ob.data.layers["Lines"].frames.remove(17)
+    scripting.take_reports()
+    bpy.ops.rototoon.update_in_betweens()
+    report = scripting.take_reports()[-1]
+    assert report.kind == "WARNING" and "in-betweens on 10 to 16 have no key on one side, and stay as they were: delete them" in report.text
+    ob.data.layers["Lines"].frames.remove(9)
+    with pytest.raises(RuntimeError, match="in-betweens on 2 to 8 and 10 to 16 have no key on one side"):
+        bpy.ops.rototoon.update_in_betweens()

@@ -19,7 +19,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
 
     name: bpy.props.StringProperty(
         name="Mask",
-        description="Name of the mask. If empty, the object's name. A mask of this name is replaced",
+        description="Name of the mask. If empty, the object's name. A mask of this name is replaced if it was made here",
     )
     use_snapped: bpy.props.BoolProperty(
         name="Snapped Lines",
@@ -34,6 +34,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
         known = bpy.data.masks.get(name)
         if known is not None:
             guard.need_own(known)
+            masks.need_made(name)
         reading = document.read(ob, results=True)
         parts = outlines.outlines(reading.document, settings.frame_offset, self.use_snapped)
         if not parts:

@@ -33,6 +33,11 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     directory: bpy.props.StringProperty(name="Folder", description="The folder that Send to Farm wrote to", subtype="DIR_PATH")
+    sent_from: bpy.props.StringProperty(
+        name="Sent From",
+        description="Name of the file that was sent, such as shot_v001.blend, if this file is a later version of it. If empty, this file's name",
+        options={"SKIP_SAVE"},
+    )
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
     def invoke(self, context, _event):
@@ -43,10 +48,12 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
 
     def begin(self, context):
         folder = folder_of(self.directory, "Choose the folder that Send to Farm wrote to")
-        self._scene, path, patterns = context.scene, bpy.data.filepath, _patterns(context.scene)
+        self._scene, path, patterns = context.scene, self.sent_from or bpy.data.filepath, _patterns(context.scene)
 
         def read(progress) -> list[collecting.Result]:
             results = collecting.results_of(folder, path)
+            if not results:
+                raise collecting.not_sent(folder, path)
             tracing.find_held(results, patterns, progress)
             return results
 
@@ -54,8 +61,6 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
 
     def finish(self, _context, work):
         results = work.result
-        if not results:
-            raise Problem("This file has no shot in the batch: open one of the files that were sent")
         found = _Found()
         failed: list[str] = []
         for result in results:
@@ -66,6 +71,8 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         if not found.objects:
             raise Problem("Nothing was taken: " + "; ".join(failed))
         self.warn("; ".join(failed))
+        if not (found.contours or found.strokes or found.regions) and not self._warnings:
+            self.warn("the results have no contour beside your keys, no line and no paint")
         return str(found)
 
     def _take(self, ob, result: collecting.Result, found: "_Found"):
@@ -125,9 +132,12 @@ class _Found:
     def __str__(self) -> str:
         """What the artist is told."""
         nouns = (self.contours, "contour"), (self.strokes, "traced stroke"), (self.regions, "painted region")
-        said = [counted(number, noun) for number, noun in nouns if number] or [counted(0, "contour")]
+        said = [counted(number, noun) for number, noun in nouns if number] or ["nothing"]
         told = ", ".join(said[:-1]) + " and " + said[-1] if len(said) > 1 else said[0]
-        return ", ".join(filter(None, (f"{told} taken into {counted(len(self.objects), 'object')}", keys_now(self.kept))))
+        into = counted(len(self.objects), "object")
+        if told == "nothing":
+            told, into = "Nothing was", " and ".join(f'"{name}"' for name in sorted(self.objects)[:NAMED]) if len(self.objects) <= NAMED else into
+        return ", ".join(filter(None, (f"{told} taken into {into}", keys_now(self.kept))))
 
 
 def _patterns(scene) -> dict[str, str]:

@@ -3,7 +3,7 @@
 import bpy
 
 from .. import clip_browser
-from ..clip_library import clips_of, folder_of
+from ..clip_library import clip_of, folder_of
 from ..clip_properties import shared
 from .reshaping_base import Reshaping
 
@@ -22,8 +22,8 @@ class ROTOTOON_OT_reshape_drawing(Reshaping, bpy.types.Operator):
 
     def begin(self, context):
         folder = folder_of(context.object, self.folder)
-        wanted = {"character": self.character, "motion": self.motion}
-        return self.work(context, lambda _progress, _threads: (clips_of(folder), wanted))
+        character, motion = self.character, self.motion
+        return self.work(context, lambda _progress, _threads: clip_of(folder, character, motion))
 
 
 CLASSES = (ROTOTOON_OT_reshape_drawing,)

@@ -5,7 +5,7 @@ import bpy
 from ...blender import guard, picture_mesh, picture_source
 from ...blender.errors import Problem
 from .. import picture_pieces
-from ..clip_library import clips_of, folder_of
+from ..clip_library import clip_of, folder_of
 from ..clip_properties import Manner, shared
 from .reshaping_base import Reshaping, mirroring, unmoved
 
@@ -46,11 +46,11 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         picture = context.scene.objects.get(self.picture) if self.picture else None
         if self.picture and picture is None:
             raise Problem(f'The scene has no object "{self.picture}"')
-        chosen = {"character": self.character, "motion": self.motion}
+        character, motion = self.character, self.motion
         remake = self.remake(folder, self.motion, self.character) if self.style else None
 
         def clips(progress, threads):
-            return (remake(progress, threads), {}) if remake is not None else (clips_of(folder), chosen)
+            return (remake(progress, threads), {}) if remake is not None else clip_of(folder, character, motion)
 
         worker = self.work(context, clips, 0.5 if self.style else 0.0, self._cut)
         self._source = picture_source.of(context.object, picture, self._drawing.frame)

@@ -29,7 +29,7 @@ class ROTOTOON_OT_in_between(Scoped, Tweening, bpy.types.Operator):
     chart: bpy.props.StringProperty(
         name="Chart",
         description="How far the movement has come on each in-between, in percent: 0 is the earlier key, 100 the later one. "
-        "Values may go beyond",
+        "Values may go beyond. As many as there are in-betweens",
         default="10, 30, 70, 90",
     )
     curve: bpy.props.StringProperty(
@@ -130,6 +130,8 @@ class ROTOTOON_OT_in_between(Scoped, Tweening, bpy.types.Operator):
             held = record.holding(*spans[0]) if spans else None
             every = zip(found.keys, found.keys[1:])
             spans = [span for span in every if span in spans or (held is not None and record.holding(*span) is held)]
+        for span in spans:
+            self._choices.need_chart(*span)
         return dict.fromkeys(spans, self._choices)
 
 

@@ -4,9 +4,10 @@
 from ...blender import grease_pencil as gp
 from ...blender import guard, preferences
 from ...blender import strokes as st
+from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted
+from ...common.wording import counted, listed
 from .. import keys as ks
 from .. import tweening
 from ..charts import Choices
@@ -59,6 +60,14 @@ class OnKeys(OnDrawing):
         return True
 
 
+def _without_keys(plan: tweening.Plan) -> str:
+    """What is said of in-betweens that no longer lie between two keys; empty if there are none."""
+    stale = {frame for found in plan.frames.values() for frame in found.made if not found.keys or not found.keys[0] < frame < found.keys[-1]}
+    if not stale:
+        return ""
+    return f"in-betweens on {listed(sorted(stale))} have no key on one side, and stay as they were: delete them, or draw a key there"
+
+
 class Tweening(OnKeys, Long):
     """Reads the keys, draws in a thread, and writes the in-betweens."""
 
@@ -75,8 +84,11 @@ class Tweening(OnKeys, Long):
         self._current = context.scene.frame_current
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=getattr(self, "layers", "ALL") == "ACTIVE")))
         self._plan = tweening.plan(self._ob, self.chosen_layers(context), self.choose)
+        stale = _without_keys(self._plan)
         if not self._plan.calls and not self._plan.current:
-            raise tweening.nothing_to_draw(self._plan)
+            problem = tweening.nothing_to_draw(self._plan)
+            raise Problem(f"{problem}; {stale}") if stale else problem
+        self.warn(stale)
         plan, threads = self._plan, preferences.threads()
         return jobs.Worker(lambda progress: tweening.draw(plan, progress, threads))
 
