@@ -17,7 +17,6 @@ import numpy as np
 
 from .errors import Problem
 
-
 MADE = "rototoon_layers"
 """Property of masks that were made here: the names of their layers, one a line."""
 
@@ -43,7 +42,7 @@ def need_made(name: str) -> None:
     if mask is None or not len(mask.layers):
         return
     made = mask.get(MADE)
-    own = [layer.name for layer in mask.layers] if made is None else [n for n in mask.layers.keys() if n not in str(made).split("\n")]
+    own = [layer.name for layer in mask.layers] if made is None else [each.name for each in mask.layers if each.name not in str(made).split("\n")]
     if own:
         layers = ", ".join(f'"{layer}"' for layer in own[:3]) + (f" and {len(own) - 3} more" if len(own) > 3 else "")
         raise Problem(

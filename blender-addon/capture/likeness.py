@@ -88,15 +88,20 @@ Match = Callable[[Known, Drawn], np.ndarray | None]
 def judge(known: list[Known], drawn: list[Drawn], match: Match) -> tuple[list[Judged], dict[int, str]]:
     """Strokes that are taken for parts, and for other strokes, by number, the part that they also look like."""
     pairs: list[tuple[float, int, int, np.ndarray, str]] = []
-    like: dict[int, tuple[float, str]] = {}
+    others: dict[int, list[_Pair]] = {}
     for i, part in enumerate(known):
         for j, stroke in enumerate(drawn):
             pair = _Pair(part, stroke, match)
             if pair.admitted():
                 pairs.append((pair.cost(), i, j, pair.points, pair.doubt()))
-            elif pair.labelled and pair.alike():
-                like[j] = min(like.get(j, (np.inf, "")), (pair.unlike() + pair.growth, part.name))
-    return _choose(known, sorted(pairs, key=lambda pair: pair[:3])), {j: name for j, (_, name) in like.items()}
+            else:
+                others.setdefault(j, []).append(pair)
+    chosen = _choose(known, sorted(pairs, key=lambda pair: pair[:3]))
+    taken = {each.stroke for each in chosen}
+    # To compare shapes is dear, so only strokes that are left are compared with all parts.
+    alike = {j: [pair for pair in own if pair.labelled and pair.alike()] for j, own in others.items() if j not in taken}
+    like = {j: min(own, key=lambda pair: pair.unlike() + pair.growth).part.name for j, own in alike.items() if own}
+    return chosen, like
 
 
 def _choose(known: list[Known], pairs: list[tuple[float, int, int, np.ndarray, str]]) -> list[Judged]:
@@ -147,13 +152,14 @@ class _Pair:
 
     def admitted(self) -> bool:
         """Whether the stroke can be the part."""
-        if self.growth > np.log(SIZE) or self.points is None:
+        part = self.part
+        if self.growth > np.log(SIZE) or (part.there and not (self.labelled and (part.lost or self.away <= BESIDE))):
             return False
-        if not self.part.there:
+        if self.points is None:
+            return False
+        if not part.there:
             return self.alike() or (self.labelled and (self.away <= BESIDE or self.unlike() <= SIMILAR))
-        if not self.labelled:
-            return False
-        return self.away <= NEAR or (self.alike() and (self.away <= BESIDE or self.part.lost))
+        return self.away <= NEAR or self.alike()
 
     def cost(self) -> float:
         """The better the stroke fits, the less. A part that has its contour is expected in its place."""

@@ -154,7 +154,8 @@ def clip_of(folder: str, character: str, motion: str) -> tuple[dict[str, Any], d
     mine = sorted({own for who, own in names if who == character})
     others = sorted({who for who, own in names if own == motion})
     has = f'"{character}" has {_quoted(mine)}' if mine else f'{_quoted(others)} {"has" if len(others) == 1 else "have"} it' if others else ""
-    raise Problem(f'The library {folder} has no clip "{motion}" by "{character}"{f"; {has}" if has else ""}: choose one of its {counted(len(names), "clip")}')
+    has = f"; {has}" if has else ""
+    raise Problem(f'The library {folder} has no clip "{motion}" by "{character}"{has}: choose one of its {counted(len(names), "clip")}')
 
 
 def _quoted(names: list[str], most: int = 4) -> str:

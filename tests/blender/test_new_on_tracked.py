@@ -55,7 +55,7 @@ def delete(addon, ob, frame, part):
 def test_a_new_part_on_a_tracked_frame_leaves_the_others_alone(addon, tracked, shape):
     before = {part: tracked_contour(addon, tracked, 5, part) for part in (1, 2)}
     shots.draw(addon, tracked, 5, [shape])
-    kind, text = said(addon, "track")
+    _, text = said(addon, "track")
     assert keys(addon, tracked) == {"Part 1": [1, 9], "Part 2": [1, 9], "Part 3": [5]}
     for part, points in before.items():
         assert np.abs(tracked_contour(addon, tracked, 5, part) - points).max() < 0.5
@@ -135,3 +135,17 @@ def test_live_says_in_the_panel_what_it_doubts(addon, fake, live, tmp_path):
         if live._run is not None:
             live._run.worker.join()
     assert live.status(ob)[0].startswith('frame 5: the new stroke is taken as a key of "Part 2"')
+
+
+def test_a_part_that_was_deleted_leaves_a_stroke_of_another_size_alone(addon, tracked):
+    delete(addon, tracked, 5, 2)
+    shots.draw(addon, tracked, 5, [CIRCLE * 4 + FAR])
+    bpy.ops.rototoon.match_contours()
+    assert keys(addon, tracked) == {"Part 1": [1, 9], "Part 2": [1, 9], "Part 3": [5]}
+
+
+def test_both_parts_drawn_again_on_a_tracked_frame_are_both_found(addon, tracked):
+    shots.draw(addon, tracked, 5, [np.roll(shots.square(4), 2, 0) + 2.0, shots.diamond(4)[::-1] - 1.0])
+    kind, text = said(addon, "match_contours")
+    assert (kind, text) == ("INFO", '2 strokes matched: "Part 1" on 5, "Part 2" on 5; 0 new parts')
+    assert keys(addon, tracked) == {"Part 1": [1, 5, 9], "Part 2": [1, 5, 9]}

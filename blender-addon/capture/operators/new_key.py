@@ -45,6 +45,8 @@ class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
                     sources.setdefault(stroke.frame, []).append(stroke)
             made += _make_key(gp.find_layer(ob, name), sources, frame)
         ob.data.update_tag()
+        for doubt in decisions.doubts:
+            self.warn(doubt)
         self.warn(guard.left_out(named, hidden=True))
         return f"Key on frame {frame}: {counted(made, 'contour')}"
 

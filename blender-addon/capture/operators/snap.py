@@ -41,6 +41,8 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
         if reading.document != self._reading.document:
             raise Problem("The contours changed while they were snapped, so the result was dropped: press Snap again")
         identity.write(self._ob, reading.found, reading.decisions)
+        for doubt in reading.decisions.doubts:
+            self.warn(doubt)
         curves = self._curves(reading)
         edited = snapping.keep_edited(self._ob)
         strokes = snapping.write(self._ob, curves, reading.found, reading.mapper)

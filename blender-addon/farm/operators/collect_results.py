@@ -132,11 +132,11 @@ class _Found:
     def __str__(self) -> str:
         """What the artist is told."""
         nouns = (self.contours, "contour"), (self.strokes, "traced stroke"), (self.regions, "painted region")
-        said = [counted(number, noun) for number, noun in nouns if number] or ["nothing"]
+        said = [counted(number, noun) for number, noun in nouns if number] or ["Nothing was"]
         told = ", ".join(said[:-1]) + " and " + said[-1] if len(said) > 1 else said[0]
         into = counted(len(self.objects), "object")
-        if told == "nothing":
-            told, into = "Nothing was", " and ".join(f'"{name}"' for name in sorted(self.objects)[:NAMED]) if len(self.objects) <= NAMED else into
+        if not any(number for number, _ in nouns) and len(self.objects) <= NAMED:
+            into = " and ".join(f'"{name}"' for name in sorted(self.objects))
         return ", ".join(filter(None, (f"{told} taken into {into}", keys_now(self.kept))))
 
 
