@@ -201,10 +201,20 @@ def _counting(content: st.Content, by_id: bool) -> Iterator[tuple[str, np.ndarra
                 yield name, _as_bytes(values) if content.kinds.get(name) == "BYTE_COLOR" else values
 
 
-def stroke_looks(content: st.Content) -> np.ndarray:
-    """A checksum of each stroke's look alone: int32, never 0. It does not depend on the other strokes of the drawing."""
-    totals, starts = [1] * len(content.sizes), content.starts.tolist()
-    for name, values in _counting(content, by_id=True):
+def has_looks(content: st.Content, known: np.ndarray) -> np.ndarray:
+    """For each stroke: whether its look is the `known` one, noted in this Blender or in one that keeps fills another way."""
+    same = stroke_looks(content) == known
+    return same if same.all() else same | (stroke_looks(content, not gp.FILL_BY_ID) == known)
+
+
+def stroke_looks(content: st.Content, by_id: bool | None = None) -> np.ndarray:
+    """A checksum of each stroke's look alone: int32, never 0. It does not depend on the other strokes of the drawing.
+
+    With `by_id` the attributes of fills count; by default as this Blender keeps them.
+    """
+    by_id = gp.FILL_BY_ID if by_id is None else by_id
+    totals, starts = [zlib.crc32(_SETTINGS[by_id])] * len(content.sizes), content.starts.tolist()
+    for name, values in _counting(content, by_id):
         of_curve, named = name in content.curve, zlib.crc32(name.encode()).to_bytes(4, "little")
         uncommon = (values != gp.DEFAULTS.get(name, 0)).reshape(len(values), -1).any(1)
         values = _bytes(values)

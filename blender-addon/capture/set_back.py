@@ -26,7 +26,7 @@ def changed(ob) -> dict[Place, int]:
     """The looks of tracked contours that are not those that were noted."""
     found = {}
     for name, frame, content in _drawings(ob, noted=True):
-        looks, known, parts = marks.stroke_looks(content), content.strokes(gp.LOOK), content.strokes(gp.PART)
+        looks, known, parts = _looks(content), content.strokes(gp.LOOK), content.strokes(gp.PART)
         made = content.strokes(gp.MADE) & (known != 0) & (looks != known)
         found |= {(name, frame, int(parts[i])): int(looks[i]) for i in np.flatnonzero(made)}
     return found
@@ -36,7 +36,7 @@ def note(ob, before: dict[Place, int]) -> str:
     """Notes the looks of all tracked contours. Returns what the artist is told of looks that were changed `before` and are set back now."""
     frames, wanted = set(), {}
     for name, frame, content in _drawings(ob, noted=False):
-        looks, parts, made = marks.stroke_looks(content), content.strokes(gp.PART), content.strokes(gp.MADE)
+        looks, parts, made = _looks(content), content.strokes(gp.PART), content.strokes(gp.MADE)
         now = {(name, frame, int(parts[i])): int(looks[i]) for i in np.flatnonzero(made)}
         if any(before[place] != now[place] for place in before.keys() & now.keys()):
             frames.add(frame)
@@ -50,6 +50,11 @@ def note(ob, before: dict[Place, int]) -> str:
     if not frames:
         return ""
     return f"tracked contours look like the keys again on {listed(sorted(frames))}: to change a part's look, change it on its keys"
+
+
+def _looks(content: st.Content) -> np.ndarray:
+    """The looks without fills as attributes, so that they are the same in every Blender: contours are lines."""
+    return marks.stroke_looks(content, by_id=False)
 
 
 def _drawings(ob, noted: bool) -> Iterator[tuple[str, int, st.Content]]:

@@ -174,7 +174,7 @@ def look_sums(content: st.Content) -> np.ndarray:
 def has_looks(content: st.Content) -> np.ndarray:
     """For each stroke: whether its look is the one that was noted. What an earlier version noted counts as that version saw it."""
     known = content.strokes(gp.LOOK)
-    same = marks.stroke_looks(content) == known
+    same = marks.has_looks(content, known)
     return same if same.all() else same | (look_sums(content) == known)
 
 

@@ -295,7 +295,7 @@ pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Resul
     Ok(found.warnings)
 }
 
-/// As [`import`], for a file whose frames are those of the document plus `offset`. `still` is a frame of the document.
+/// As [`import()`], for a file whose frames are those of the document plus `offset`. `still` is a frame of the document.
 ///
 /// # Errors
 ///

@@ -48,6 +48,9 @@ CHANGES = {
     "curve type": _curve,
 }
 """Each changes the look of the last stroke or point (the first stroke's, for the curve type) of a drawing with two materials or more."""
+if bpy.app.version < (5, 1, 0):
+    # Fills are materials' there.
+    del CHANGES["fill"], CHANGES["hidden line"]
 
 
 def second_material(ob):

@@ -123,6 +123,25 @@ def test_a_drawing_of_an_earlier_blender_is_untouched_when_its_fills_become_attr
     assert told(addon, ob, 5) is False, "now they are a look like others"
 
 
+def test_a_look_noted_by_an_earlier_blender_stays_when_fills_become_attributes(addon, monkeypatch):
+    marks, gp = addon("blender.marks"), addon("blender.grease_pencil")
+    handle = drawing(addon, keyed(addon, (1, 9)), "Lines", 1)
+    monkeypatch.setattr(gp, "FILL_BY_ID", False)
+    noted = marks.stroke_looks(st_of(addon, handle))
+    monkeypatch.setattr(gp, "FILL_BY_ID", True)
+    at_first = marks.stroke_looks(st_of(addon, handle))
+    gp.put(handle, "fill_id", np.array([1, 0, 2], np.int32))
+    found = st_of(addon, handle)
+    assert marks.has_looks(found, noted).tolist() == [True, True, True]
+    assert marks.has_looks(found, at_first).tolist() == [False, True, False], "noted here, a fill is a look"
+    looks.CHANGES["radius"](addon, handle)
+    assert marks.has_looks(st_of(addon, handle), noted).tolist() == [True, True, False]
+
+
+def st_of(addon, handle):
+    return addon("blender.strokes").read(handle)
+
+
 @pytest.mark.parametrize("change", looks.CHANGES)
 def test_an_in_between_with_another_look_becomes_a_key(addon, change):
     ob = between(addon)
