@@ -13,7 +13,7 @@ Documents and clips have the form of their JSON files::
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -171,9 +171,22 @@ def reshape(
         return Reshaped(**json.loads(handles.take(handles.Text, "rototoon_reshape", *arguments)))
 
 
-def add_to_library(folder: str, clips: Mapping[str, Any], source: str = "") -> None:
-    """Adds clips to the library in a folder. They replace clips of the same character and motion."""
-    handles.call("rototoon_library_add", *text(folder), *as_json(clips), *text(source))
+def add_to_library(folder: str, clips: Mapping[str, Any], source: str = "", replace: bool = False) -> list[dict[str, Any]]:
+    """Adds clips to the library in a folder, all or none. Returns the entries of clips that they replaced.
+
+    Without `replace`, a clip of the same character and motion is a `RototoonError`, and nothing is added.
+    """
+    return add_files_to_library(folder, [(clips, source)], replace)
+
+
+def add_files_to_library(
+    folder: str, files: Iterable[tuple[Mapping[str, Any], str]], replace: bool = False
+) -> list[dict[str, Any]]:
+    """Adds files of clips, each with its source, as `add_to_library` does: the clips of all files, or none."""
+    given = [{"clips": clips, "source": source} for clips, source in files]
+    arguments = (*text(folder), *as_json(given), *as_json({"replace": replace}))
+    replaced: list[dict[str, Any]] = json.loads(handles.take(handles.Text, "rototoon_library_add_files", *arguments))["replaced"]
+    return replaced
 
 
 def read_library(folder: str, character: str = "", motion: str = "", read: bool = True) -> Found:

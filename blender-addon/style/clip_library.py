@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from rototoon.style import KEY_POINTS, Skeleton, add_to_library, read_library, skeleton_of
+from rototoon.style import KEY_POINTS, Skeleton, add_files_to_library, read_library, skeleton_of
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
@@ -100,22 +100,10 @@ def read(folder: str) -> Shelf:
 def add(folder: str, files: Sequence[tuple[dict[str, Any], str]], replace: bool) -> int:
     """Adds files of clips, each with its source, to a library. Returns how many clips of the same character and motion they replaced.
 
-    Without `replace`, such a clip is a `Problem`, and nothing is added: it may be another shot's, or a colleague's.
+    Without `replace`, such a clip is an error, and nothing is added: it may be another shot's, or a colleague's. The core looks for it
+    under the library's lock, so that of two who save the same clip at once one gets the error.
     """
-    there = {(entry["character"], entry["motion"]): entry for entry in read_library(folder, read=False).entries}
-    names = [(clip["character"], clip["motion"]) for clips, _ in files for clip in clips["clips"]]
-    taken = [name for name in names if name in there]
-    if taken and not replace:
-        entry = there[taken[0]]
-        more = f" and {len(taken) - 1} more of these clips" if len(taken) > 1 else ""
-        source = f", from {entry['source']}" if entry["source"] else ""
-        raise Problem(
-            f'The library {folder} has "{entry["motion"]}" by "{entry["character"]}"{more} already ({entry["file"]}, '
-            f"{counted(entry['frames'], 'frame')}{source}): choose another name of the character or the motion, or Replace"
-        )
-    for clips, source in files:
-        add_to_library(folder, clips, source)
-    return len(taken)
+    return len(add_files_to_library(folder, files, replace))
 
 
 def replaced(count: int) -> str:

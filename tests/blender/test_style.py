@@ -198,7 +198,7 @@ def test_a_clip_of_the_same_name_is_only_replaced_on_request(addon, tmp_path):
     other = tmp_path / "other"
     other.mkdir()
     performer(addon, other, 0.3)
-    with pytest.raises(RuntimeError, match=r'has "walk" by "me" already \(me-walk.clip.json, 9 frames\): choose another name .* or Replace'):
+    with pytest.raises(RuntimeError, match=r'found "walk" by "me" already \(me-walk.clip.json, 9 frames\), expected another .* or "replace"'):
         bpy.ops.rototoon.save_clip(**save)
     assert {path.name: path.read_bytes() for path in shelf.iterdir()} == before
     scripting.take_reports()

@@ -97,6 +97,21 @@ def test_a_library_is_searched(shelf):
     assert len(style.read_library(shelf).clips["clips"]) == 3
 
 
+def test_clips_of_a_library_are_replaced_on_request_only(tmp_path):
+    folder = str(tmp_path / "clips")
+    walk = style.capture_clip(figure(FRAMES, 0.0, 0.3), "plain", "walk").clips
+    jump = {**walk, "clips": [walk["clips"][0] | {"motion": "jump"}]}
+    assert style.add_to_library(folder, walk, "shot 1") == []
+    with pytest.raises(RototoonError, match=r'found "walk" by "plain" already \(.*, from "shot 1"\), expected another .* or "replace"'):
+        style.add_files_to_library(folder, [(jump, "shot 2"), (walk, "shot 2")])
+    assert [entry["source"] for entry in style.read_library(folder, read=False).entries] == ["shot 1"], "all or none"
+    assert [entry["source"] for entry in style.add_to_library(folder, walk, "shot 2", replace=True)] == ["shot 1"]
+    assert style.add_files_to_library(folder, [(jump, "shot 3")], replace=True) == []
+    assert [entry["source"] for entry in style.read_library(folder, read=False).entries] == ["shot 2", "shot 3"]
+    with pytest.raises(RototoonError, match="not a JSON document"):
+        style.add_to_library(folder, walk | {"fps": float("nan")}, replace=True)
+
+
 def test_a_manner_is_given_and_a_drawing_follows(shelf):
     clips = style.read_library(shelf).clips
     seen = []

@@ -19,7 +19,7 @@ def text(value: str) -> tuple[bytes, int]:
     return data, len(data)
 
 
-def as_json(value: Mapping[str, Any]) -> tuple[bytes, int]:
+def as_json(value: Mapping[str, Any] | Sequence[Any]) -> tuple[bytes, int]:
     """JSON in UTF-8 and its length."""
     try:
         return text(json.dumps(value, allow_nan=False))

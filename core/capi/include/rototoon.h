@@ -683,8 +683,9 @@ RototoonStatus rototoon_reshape(const uint8_t *document,
                                 struct RototoonText **made,
                                 struct RototoonText **error);
 
-// Adds clips to the library in a folder. They replace clips of the same character and motion. `clips` is a file of
-// clips as JSON. `source` is a text that says where the clips come from. It may be empty.
+// Adds clips to the library in a folder, all or none: none if the library has a clip of the same character and motion.
+// `rototoon_library_add_files` can replace such clips. `clips` is a file of clips as JSON. `source` is a text that says
+// where the clips come from. It may be empty.
 RototoonStatus rototoon_library_add(const uint8_t *folder,
                                     size_t folder_length,
                                     const uint8_t *clips,
@@ -692,6 +693,24 @@ RototoonStatus rototoon_library_add(const uint8_t *folder,
                                     const uint8_t *source,
                                     size_t source_length,
                                     struct RototoonText **error);
+
+// Adds files of clips to the library in a folder, all or none.
+//
+// `files` is JSON: `[{"clips": a file of clips, "source": text}]`. The source says where the clips come from, and may be
+// left out. `options` is a JSON object or empty. Its field `replace` is whether to replace clips of the same character and
+// motion. Without it such a clip is an error, and nothing is added. Clips are looked for and added under one lock: of
+// two processes that add the same clip at once, one gets the error.
+//
+// `added` is JSON: `{"replaced": entries, "aside": text}`. `replaced` are the entries of the replaced clips, as
+// `rototoon_library_find` has them. `aside` is the path of a damaged index that was set aside, or null.
+RototoonStatus rototoon_library_add_files(const uint8_t *folder,
+                                          size_t folder_length,
+                                          const uint8_t *files,
+                                          size_t files_length,
+                                          const uint8_t *options,
+                                          size_t options_length,
+                                          struct RototoonText **added,
+                                          struct RototoonText **error);
 
 // Finds clips in the library in a folder.
 //

@@ -8,7 +8,7 @@ use rototoon::import::bvh::{self, JointMap, Up, View};
 use rototoon::pipeline::{self, ClipJob, Mirror, PipelineError, ReshapeJob, Side};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
-use rototoon::project::library::{Entry, Library};
+use rototoon::project::library::{Addition, Entry, Existing, Library};
 use rototoon::project::skeleton as bodies;
 use rototoon::reshape::puppet;
 use rototoon::scene::{Clip, FrameNumber};
@@ -298,11 +298,39 @@ fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Fail
     }
 }
 
-/// Adds clips to the library in a folder.
+/// Adds clips to the library in a folder, and replaces none.
 pub fn library_add(folder: &str, clips: &str, source: &str) -> Result<(), Failure> {
     let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
     let mut library = Library::open(Path::new(folder));
-    library.add_all(&clips.clips, clips.fps, source).map(drop).map_err(Failure::error)
+    library.add(&[Addition { clips: &clips, source }], Existing::Refuse).map(drop).map_err(Failure::error)
+}
+
+/// Adds files of clips to the library in a folder, all or none.
+pub fn library_add_files(folder: &str, files: &str, json: &str) -> Result<String, Failure> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Given {
+        clips: Value,
+        #[serde(default)]
+        source: String,
+    }
+    #[derive(Deserialize, Default)]
+    #[serde(deny_unknown_fields, default)]
+    struct Wanted {
+        replace: bool,
+    }
+    let wanted: Wanted = if json.is_empty() { Wanted::default() } else { options(json)? };
+    let given: Vec<Given> = serde_json::from_str(files).map_err(|error| Failure::Error(format!("files: {error}")))?;
+    let read = given.iter().enumerate().map(|(k, file)| {
+        let clips = Clips::parse(&file.clips.to_string(), &format!("files[{k}].clips")).map_err(Failure::error)?;
+        Ok((clips, file.source.as_str()))
+    });
+    let read: Vec<(Clips, &str)> = read.collect::<Result<_, Failure>>()?;
+    let added: Vec<Addition<'_>> = read.iter().map(|(clips, source)| Addition { clips, source }).collect();
+    let existing = if wanted.replace { Existing::Replace } else { Existing::Refuse };
+    let done = Library::open(Path::new(folder)).add(&added, existing).map_err(Failure::error)?;
+    let aside = done.aside.map(|path| path.display().to_string());
+    Ok(json!({"replaced": done.replaced, "aside": aside}).to_string())
 }
 
 /// Finds the clips of a library whose character and motion contain given words, and reads them if requested.

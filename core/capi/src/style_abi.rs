@@ -185,8 +185,9 @@ pub unsafe extern "C" fn rototoon_reshape(
     }
 }
 
-/// Adds clips to the library in a folder. They replace clips of the same character and motion. `clips` is a file of
-/// clips as JSON. `source` is a text that says where the clips come from. It may be empty.
+/// Adds clips to the library in a folder, all or none: none if the library has a clip of the same character and motion.
+/// `rototoon_library_add_files` can replace such clips. `clips` is a file of clips as JSON. `source` is a text that says
+/// where the clips come from. It may be empty.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_library_add(
     folder: *const u8,
@@ -204,6 +205,39 @@ pub unsafe extern "C" fn rototoon_library_add(
             let clips = text(clips, clips_length, "clips")?;
             let source = text(source, source_length, "source")?;
             install(|| style::library_add(folder, clips, source))
+        })
+    }
+}
+
+/// Adds files of clips to the library in a folder, all or none.
+///
+/// `files` is JSON: `[{"clips": a file of clips, "source": text}]`. The source says where the clips come from, and may be
+/// left out. `options` is a JSON object or empty. Its field `replace` is whether to replace clips of the same character and
+/// motion. Without it such a clip is an error, and nothing is added. Clips are looked for and added under one lock: of
+/// two processes that add the same clip at once, one gets the error.
+///
+/// `added` is JSON: `{"replaced": entries, "aside": text}`. `replaced` are the entries of the replaced clips, as
+/// `rototoon_library_find` has them. `aside` is the path of a damaged index that was set aside, or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_library_add_files(
+    folder: *const u8,
+    folder_length: usize,
+    files: *const u8,
+    files_length: usize,
+    options: *const u8,
+    options_length: usize,
+    added: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(added, null_mut(), "added")?;
+            let folder = text(folder, folder_length, "folder")?;
+            let files = text(files, files_length, "files")?;
+            let options = text(options, options_length, "options")?;
+            give(added, RototoonText::new(install(|| style::library_add_files(folder, files, options))?));
+            Ok(())
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Tests of the ABI from the side of a foreign caller: pointers, statuses, texts.
 
+mod clips;
 mod fills;
 mod saving;
 

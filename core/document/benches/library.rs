@@ -4,7 +4,8 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Clip;
-use rototoon_document::library::Library;
+use rototoon_document::clips::Clips;
+use rototoon_document::library::{Addition, Existing, Library};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -22,7 +23,8 @@ fn clip(number: usize) -> Clip {
 
 fn filled(folder: &Path) {
     let mut library = Library::open(folder);
-    (0..CLIPS).for_each(|k| drop(library.add(&clip(k), 24.0, "").expect("a folder that can be written")));
+    let clips = Clips { clips: (0..CLIPS).map(clip).collect(), fps: 24.0 };
+    library.add(&[Addition { clips: &clips, source: "" }], Existing::Refuse).expect("a folder that can be written");
 }
 
 fn open_and_read(criterion: &mut Criterion) {

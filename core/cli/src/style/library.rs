@@ -2,9 +2,9 @@
 
 use crate::arguments;
 use crate::failure::{Failure, line};
-use clap::{Arg, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::project::clips::Clips;
-use rototoon::project::library::Library;
+use rototoon::project::library::{AddError, Addition, Existing, Library};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub fn command() -> Command {
     let word =
         |id: &'static str, help: &'static str| Arg::new(id).long(id).value_name("WORD").help(help).default_value("");
     let add = Command::new("add")
-        .about("Adds the clips of a file; they replace clips of the same character and motion")
+        .about("Adds the clips of a file, all or none; none if the library has one of the same character and motion")
         .arg(folder())
         .arg(
             Arg::new("clips")
@@ -29,7 +29,13 @@ pub fn command() -> Command {
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(word("source", "Where the clips come from"));
+        .arg(word("source", "Where the clips come from"))
+        .arg(
+            Arg::new("replace")
+                .long("replace")
+                .help("Replaces clips of the same character and motion")
+                .action(ArgAction::SetTrue),
+        );
     let list = Command::new("list")
         .about("Lists clips: character, motion, frames, frames per second, file, source")
         .arg(folder())
@@ -53,13 +59,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut library = Library::open(folder);
     library.troubles().iter().for_each(|trouble| line("warning", &trouble.to_string()));
     if what == "add" {
-        let from = arguments::path(given, "clips");
-        let read = Clips::load(from).map_err(|e| Failure::Other(e.to_string()))?;
-        let aside = library.add_all(&read.clips, read.fps, arguments::choice(given, "source"));
-        if let Some(path) = aside.map_err(|e| Failure::Other(e.to_string()))? {
-            line("note", &format!("the damaged index is kept as {}", path.display()));
-        }
-        return Ok(());
+        return add(&mut library, given);
     }
     let mut out = std::io::stdout().lock();
     let found = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
@@ -69,6 +69,25 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         if writeln!(out, "{fields}").is_err() {
             break;
         }
+    }
+    Ok(())
+}
+
+fn add(library: &mut Library, given: &ArgMatches) -> Result<(), Failure> {
+    let read = Clips::load(arguments::path(given, "clips")).map_err(|e| Failure::Other(e.to_string()))?;
+    let addition = Addition { clips: &read, source: arguments::choice(given, "source") };
+    let existing = if given.get_flag("replace") { Existing::Replace } else { Existing::Refuse };
+    let added = library.add(&[addition], existing).map_err(|error| {
+        Failure::Other(match error {
+            AddError::Taken(taken) => format!("{taken}, expected another character or motion, or --replace"),
+            other => other.to_string(),
+        })
+    })?;
+    for e in &added.replaced {
+        line("note", &format!("replaced {:?} by {:?} ({})", e.motion, e.character, e.file));
+    }
+    if let Some(path) = added.aside {
+        line("note", &format!("the damaged index is kept as {}", path.display()));
     }
     Ok(())
 }

@@ -162,7 +162,7 @@ fn clips_of_a_library_may_have_other_frame_rates() {
     let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
     let fill = |clips_of: Value| {
         std::fs::write(&clips, clips_of.to_string()).unwrap();
-        assert!(rototoon(&["style", "library", "add", to, from]).status.success());
+        assert!(rototoon(&["style", "library", "add", to, from, "--replace"]).status.success());
     };
     fill(library());
     // The run of one character at four times the rate, over the same time.
@@ -215,6 +215,35 @@ fn processes_that_add_at_the_same_time_lose_nothing() {
     sources.sort_unstable();
     sources.dedup();
     assert_eq!((entries.len(), sources.len()), (PROCESSES * ADDS, PROCESSES * ADDS));
+}
+
+#[test]
+fn clips_of_a_library_are_replaced_on_request_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    std::fs::write(&clips, library().to_string()).unwrap();
+    let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
+    let add = |more: &[&str]| {
+        let done = rototoon(&[&["style", "library", "add", to, from], more].concat());
+        (done.status.code(), String::from_utf8(done.stderr).unwrap())
+    };
+    let sources = || {
+        let listed = rototoon(&["style", "library", "list", to, "--character", "old", "--motion", "run"]);
+        String::from_utf8(listed.stdout).unwrap()
+    };
+    assert_eq!(add(&["--source", "shot 3"]), (Some(0), String::new()));
+    std::fs::remove_file(shelf.join("plain-run.clip.json")).unwrap();
+    let (status, said) = add(&["--source", "shot 4"]);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("already (") && said.contains("from \"shot 3\""), "{said}");
+    assert!(said.ends_with("more of these clips, expected another character or motion, or --replace\n"), "{said}");
+    assert!(!shelf.join("plain-run.clip.json").exists(), "all or none");
+    assert!(sources().ends_with("\tshot 3\n"), "{}", sources());
+    let (status, said) = add(&["--source", "shot 4", "--replace"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("note: replaced \"run\" by \"old\" (old-run.clip.json)\n"), "{said}");
+    assert!(!said.contains("by \"plain\" (plain-run"), "its file was gone: {said}");
+    assert!(sources().ends_with("\tshot 4\n"), "{}", sources());
 }
 
 #[test]

@@ -1,11 +1,17 @@
 //! Adds clips to a library, one process at a time.
+//!
+//! **What is there.** A clip of the same character and motion may be another shot's, or a colleague's. So
+//! [`Existing::Refuse`] writes nothing if one of the clips is there. The look and the writing are under one lock: of two
+//! processes that add the same clip at once, one gets the error. An entry whose file is gone is no clip that could be
+//! lost; an entry whose file is damaged may be one.
 
 use super::index::ENDING;
-use super::{AddError, Entry, INDEX, Index, Library, Trouble, one_clip};
+use super::{AddError, Entry, INDEX, Index, Library, Taken, Trouble, one_clip};
 use crate::clips::Clips;
 use crate::output::{WriteError, write_whole};
 use rototoon_base::scene::Clip;
 use serde_json::Map;
+use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -20,42 +26,71 @@ const WAIT: Duration = Duration::from_secs(30);
 /// Greatest number of letters of each label in the name of a clip file. Most systems allow 255 bytes for a name.
 const MOST_LETTERS: usize = 80;
 
-impl Library {
-    /// Adds a clip. It replaces an earlier clip of the same character and motion. Returns the path of a damaged index
-    /// that was set aside, if there was one.
-    ///
-    /// # Errors
-    ///
-    /// An [`AddError`] if the index is of a later version or cannot be read, if another process holds the library for
-    /// too long, or if a file cannot be written.
-    pub fn add(&mut self, clip: &Clip, fps: f64, source: &str) -> Result<Option<PathBuf>, AddError> {
-        self.add_all(std::slice::from_ref(clip), fps, source)
-    }
+/// What happens to clips of the library that have the character and the motion of a clip that is added.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Existing {
+    /// They stay, and nothing is added.
+    #[default]
+    Refuse,
+    /// They are replaced.
+    Replace,
+}
 
-    /// Adds some clips, as [`Self::add`] does. The index is written once.
+/// Clips of one source that are added.
+#[derive(Clone, Copy, Debug)]
+pub struct Addition<'a> {
+    /// The clips. No two of all that is added have the same character and motion.
+    pub clips: &'a Clips,
+    /// Source of the clips; may be empty.
+    pub source: &'a str,
+}
+
+/// What was done beside adding clips.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Added {
+    /// The entries of clips that were there and have been replaced, as they were.
+    pub replaced: Vec<Entry>,
+    /// Path of a damaged index that was set aside.
+    pub aside: Option<PathBuf>,
+}
+
+impl Library {
+    /// Adds clips, all or none of them. The index is written once.
     ///
     /// # Errors
     ///
-    /// As for [`Self::add`].
-    pub fn add_all(&mut self, clips: &[Clip], fps: f64, source: &str) -> Result<Option<PathBuf>, AddError> {
+    /// An [`AddError`] if a clip is there and must not be replaced, if two of the added clips are of the same character
+    /// and motion, if the index is of a later version or cannot be read, if another process holds the library for too
+    /// long, or if a file cannot be written.
+    pub fn add(&mut self, added: &[Addition<'_>], existing: Existing) -> Result<Added, AddError> {
         let folder = self.folder.clone();
         fs::create_dir_all(&folder).map_err(|source| WriteError { path: folder.clone(), source })?;
         let _lock = lock(&folder.join(LOCK))?;
         // Another process may have added clips since this library was opened.
         *self = Self::open(&folder);
         changeable(&self.index, folder.join(INDEX))?;
-        for clip in clips {
-            self.put(clip, fps, source)?;
+        let clips = || added.iter().flat_map(|one| one.clips.clips.iter().map(move |clip| (clip, one)));
+        once(clips().map(|(clip, _)| clip))?;
+        let replaced: Vec<Entry> = clips().filter_map(|(clip, _)| self.existing(clip)).cloned().collect();
+        if let (Existing::Refuse, Some(first)) = (existing, replaced.first()) {
+            return Err(AddError::Taken(Taken { folder, first: first.clone(), more: replaced.len() - 1 }));
+        }
+        for (clip, one) in clips() {
+            self.put(clip, one.clips.fps, one.source)?;
         }
         let aside = if self.index.damaged() { set_aside(&folder)? } else { None };
         write_whole(&folder.join(INDEX), self.index.text().as_bytes())?;
-        Ok(aside)
+        Ok(Added { replaced, aside })
+    }
+
+    /// The entry of a clip of the same character and motion whose file is there.
+    fn existing(&self, clip: &Clip) -> Option<&Entry> {
+        self.index.entries.iter().find(|entry| of_same(entry, clip) && is_there(&self.folder.join(&entry.file)))
     }
 
     /// Writes the file of a clip, and its entry in memory.
     fn put(&mut self, clip: &Clip, fps: f64, source: &str) -> Result<(), WriteError> {
-        let same = |entry: &Entry| entry.character == clip.character && entry.motion == clip.motion;
-        let known = self.index.entries.iter().position(same);
+        let known = self.index.entries.iter().position(|entry| of_same(entry, clip));
         let own = known.map(|k| self.index.entries[k].file.clone()).filter(|file| self.may_replace(file, clip));
         let entry = Entry {
             file: own.unwrap_or_else(|| self.free_name(clip)),
@@ -95,6 +130,22 @@ impl Library {
         let numbered = (2..).map(|n| format!("{stem}-{n}{ENDING}"));
         std::iter::once(format!("{stem}{ENDING}")).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
     }
+}
+
+fn of_same(entry: &Entry, clip: &Clip) -> bool {
+    entry.character == clip.character && entry.motion == clip.motion
+}
+
+/// Refuses clips of which one would replace another.
+fn once<'a>(clips: impl Iterator<Item = &'a Clip>) -> Result<(), AddError> {
+    let mut seen = BTreeSet::new();
+    for clip in clips {
+        if !seen.insert((&clip.character, &clip.motion)) {
+            let (character, motion) = (clip.character.clone(), clip.motion.clone());
+            return Err(AddError::Twice { character, motion });
+        }
+    }
+    Ok(())
 }
 
 /// Whether something has this name, be it a link that leads nowhere.

@@ -15,6 +15,7 @@
 //! - Fields of the index that this version does not know are kept.
 //! - A damaged index gets the name `library.damaged-1.json`, or the next free number, before a new one is written.
 //! - An index of a later version is never changed: that is an error.
+//! - A clip is replaced only if the caller says so ([`Existing`]). Otherwise nothing is added.
 //! - A clip file is replaced only by a clip of the same character and motion. If the index names a file with another
 //!   content, the clip gets a file of its own.
 //!
@@ -27,8 +28,9 @@ mod trouble;
 #[cfg(test)]
 mod tests;
 
+pub use add::{Added, Addition, Existing};
 pub use index::{ENDING, VERSION};
-pub use trouble::{AddError, Trouble};
+pub use trouble::{AddError, Taken, Trouble};
 
 use super::clips::Clips;
 use index::Index;

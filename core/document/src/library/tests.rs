@@ -5,12 +5,18 @@ fn clip(character: &str, motion: &str, frames: usize) -> Clip {
     Clip::new(character, motion, (0..frames).map(|f| [Point::new(f as f64, 1.0); 17]).collect())
 }
 
+/// Adds a clip, whether or not there is one of its names.
+fn put(library: &mut Library, clip: &Clip, fps: f64, source: &str) -> Result<Added, AddError> {
+    let clips = Clips { clips: vec![clip.clone()], fps };
+    library.add(&[Addition { clips: &clips, source }], Existing::Replace)
+}
+
 fn filled() -> (tempfile::TempDir, Library) {
     let folder = tempfile::tempdir().unwrap();
     let mut library = Library::open(&folder.path().join("clips"));
-    library.add(&clip("Ann", "walk", 3), 12.0, "shot 7").unwrap();
-    library.add(&clip("Ann", "run", 2), 12.0, "").unwrap();
-    library.add(&clip("Bo/b", "walk", 4), 24.0, "").unwrap();
+    put(&mut library, &clip("Ann", "walk", 3), 12.0, "shot 7").unwrap();
+    put(&mut library, &clip("Ann", "run", 2), 12.0, "").unwrap();
+    put(&mut library, &clip("Bo/b", "walk", 4), 24.0, "").unwrap();
     (folder, library)
 }
 
@@ -29,7 +35,7 @@ fn what_is_added_is_found_again() {
 #[test]
 fn a_clip_takes_the_place_of_the_same() {
     let (folder, mut library) = filled();
-    library.add(&clip("Ann", "walk", 9), 12.0, "").unwrap();
+    put(&mut library, &clip("Ann", "walk", 9), 12.0, "").unwrap();
     let library = Library::open(&folder.path().join("clips"));
     assert_eq!(library.entries().iter().map(|e| e.frames).collect::<Vec<_>>(), [9, 2, 4]);
 }
@@ -74,7 +80,7 @@ fn clips_of_several_frame_rates_are_read_at_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut library = Library::open(folder.path());
     for (motion, frames, fps) in [("walk", 5, 24.0), ("run", 9, 48.0), ("hop", 9, 48.0), ("fly", 3, 12.0)] {
-        library.add(&clip("Ann", motion, frames), fps, "").unwrap();
+        put(&mut library, &clip("Ann", motion, frames), fps, "").unwrap();
     }
     let counts = |fps: f64| {
         let (clips, troubles) = library.read_at(library.entries().iter(), fps);
@@ -127,9 +133,9 @@ fn fields_of_others_and_their_order_stay() {
     let more = more.replacen("\"source\": \"shot 7\"", "\"source\": \"shot 7\",\n      \"rating\": 5", 1);
     fs::write(&index, &more).unwrap();
     let mut library = Library::open(index.parent().unwrap());
-    library.add(&clip("Ann", "run", 2), 12.0, "").unwrap();
+    put(&mut library, &clip("Ann", "run", 2), 12.0, "").unwrap();
     assert_eq!(fs::read_to_string(&index).unwrap(), more, "nothing else changes");
-    library.add(&clip("Ann", "walk", 9), 12.0, "new").unwrap();
+    put(&mut library, &clip("Ann", "walk", 9), 12.0, "new").unwrap();
     let new = more.replacen("\"frames\": 3", "\"frames\": 9", 1).replacen("shot 7", "new", 1);
     assert_eq!(fs::read_to_string(&index).unwrap(), new);
 }
@@ -140,7 +146,7 @@ fn an_index_that_is_not_understood_is_never_changed() {
     let index = folder.path().join("clips").join(INDEX);
     let later = r#"{"rototoon_library": 2, "clips": [], "more": 1}"#;
     fs::write(&index, later).unwrap();
-    let error = library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap_err();
+    let error = put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap_err();
     assert!(error.to_string().contains("found an index of version 2, expected 1 or less"), "{error}");
     assert_eq!(fs::read_to_string(&index).unwrap(), later);
     fs::remove_file(&index).unwrap();
@@ -148,7 +154,7 @@ fn an_index_that_is_not_understood_is_never_changed() {
     let reopened = Library::open(index.parent().unwrap());
     assert!(reopened.troubles()[0].to_string().contains("cannot read the index: it is a folder"));
     assert_eq!(reopened.entries().len(), 3, "the files are read instead");
-    assert!(matches!(library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap_err(), AddError::Unreadable { .. }));
+    assert!(matches!(put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap_err(), AddError::Unreadable { .. }));
     assert!(index.is_dir());
     assert_eq!(fs::read_dir(index.parent().unwrap()).unwrap().count(), 5, "three clips, the folder and the lock");
 }
@@ -165,7 +171,7 @@ fn damaged_indexes_are_set_aside() {
         fs::write(folder.join(INDEX), damaged).unwrap();
         let mut library = Library::open(&folder);
         assert_eq!(library.troubles().len(), 1, "{:?}", library.troubles());
-        let aside = library.add(&clip("Cy", "bow", 1), 8.0, "").unwrap().unwrap();
+        let aside = put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap().aside.unwrap();
         assert!(aside.ends_with(format!("library.damaged-{number}.json")));
         assert_eq!(fs::read(aside).unwrap(), damaged);
         let reopened = Library::open(&folder);
@@ -186,7 +192,7 @@ fn only_the_file_of_the_same_clip_is_replaced() {
         let text = fs::read_to_string(folder.join(INDEX)).unwrap();
         let file = Library::open(&folder).entries()[0].file.clone();
         fs::write(folder.join(INDEX), text.replace(&file, "other.clip.json")).unwrap();
-        library.add(&clip("Ann", "walk", 7), 12.0, "").unwrap();
+        put(&mut library, &clip("Ann", "walk", 7), 12.0, "").unwrap();
         assert_eq!(fs::read(&other).unwrap(), content);
         let reopened = Library::open(&folder);
         let (clips, _) = reopened.read(reopened.search("ann", "walk"));
@@ -198,8 +204,8 @@ fn only_the_file_of_the_same_clip_is_replaced() {
 fn labels_of_any_length_have_a_file() {
     let (folder, mut library) = filled();
     let long = "ü".repeat(300);
-    library.add(&clip(&long, &long, 1), 8.0, "").unwrap();
-    library.add(&clip(&format!("{long}2"), &long, 1), 8.0, "").unwrap();
+    put(&mut library, &clip(&long, &long, 1), 8.0, "").unwrap();
+    put(&mut library, &clip(&format!("{long}2"), &long, 1), 8.0, "").unwrap();
     assert_eq!(Library::open(&folder.path().join("clips")).entries().len(), 5);
 }
 
@@ -213,7 +219,7 @@ fn nothing_is_lost_if_many_add_at_once() {
                 let mut library = Library::open(folder);
                 for what in 0..15 {
                     let (who, what) = (format!("c{who}"), format!("m{what}"));
-                    library.add(&clip(&who, &what, 1), 12.0, &format!("shot {who} {what}")).unwrap();
+                    put(&mut library, &clip(&who, &what, 1), 12.0, &format!("shot {who} {what}")).unwrap();
                 }
             });
         }
@@ -224,4 +230,87 @@ fn nothing_is_lost_if_many_add_at_once() {
         library.entries().iter().filter(|e| e.source == format!("shot {} {}", e.character, e.motion)).count(),
         120
     );
+}
+
+#[test]
+fn a_clip_that_is_there_is_only_replaced_on_request() {
+    let (folder, mut library) = filled();
+    let folder = folder.path().join("clips");
+    let before = contents(&folder);
+    let clips = Clips { clips: vec![clip("Cy", "bow", 1), clip("Ann", "walk", 9), clip("Ann", "run", 9)], fps: 12.0 };
+    let added = [Addition { clips: &clips, source: "shot 8" }];
+    let said = library.add(&added, Existing::Refuse).unwrap_err().to_string();
+    let expected = format!(
+        "{}: found \"walk\" by \"Ann\" already (ann-walk.clip.json, 3 frames, from \"shot 7\"), and 1 more of these clips, \
+         expected another character or motion, or \"replace\"",
+        folder.display()
+    );
+    assert_eq!((said, contents(&folder)), (expected, before), "nothing is added");
+    let done = library.add(&added, Existing::Replace).unwrap();
+    assert_eq!(
+        done.replaced.iter().map(|e| (e.motion.as_str(), e.frames)).collect::<Vec<_>>(),
+        [("walk", 3), ("run", 2)]
+    );
+    assert_eq!(library.entries().iter().map(|e| e.frames).collect::<Vec<_>>(), [9, 9, 4, 1]);
+}
+
+#[test]
+fn an_entry_without_a_file_is_filled_and_one_with_a_damaged_file_is_refused() {
+    let (folder, mut library) = filled();
+    let folder = folder.path().join("clips");
+    let again = Clips { clips: vec![clip("Ann", "walk", 9)], fps: 12.0 };
+    let added = [Addition { clips: &again, source: "" }];
+    fs::write(folder.join("ann-walk.clip.json"), "{").unwrap();
+    assert!(matches!(library.add(&added, Existing::Refuse), Err(AddError::Taken(_))));
+    fs::remove_file(folder.join("ann-walk.clip.json")).unwrap();
+    assert_eq!(library.add(&added, Existing::Refuse).unwrap(), Added::default());
+    assert_eq!(library.entries()[0].frames, 9);
+}
+
+#[test]
+fn a_file_put_into_the_folder_is_not_replaced_either() {
+    let (folder, mut library) = filled();
+    let clips = Clips { clips: vec![clip("Cy", "bow", 1)], fps: 8.0 };
+    clips.save(&folder.path().join("clips").join("new.clip.json")).unwrap();
+    let error = library.add(&[Addition { clips: &clips, source: "" }], Existing::Refuse).unwrap_err();
+    assert!(error.to_string().contains("\"bow\" by \"Cy\" already (new.clip.json, 1 frame),"), "{error}");
+}
+
+#[test]
+fn two_added_clips_of_one_name_are_refused() {
+    let (folder, mut library) = filled();
+    let before = contents(&folder.path().join("clips"));
+    let clips = Clips { clips: vec![clip("Cy", "bow", 1)], fps: 8.0 };
+    let error = library.add(&[Addition { clips: &clips, source: "" }; 2], Existing::Replace).unwrap_err();
+    assert!(error.to_string().starts_with("found two clips \"bow\" by \"Cy\" to add"), "{error}");
+    assert_eq!(contents(&folder.path().join("clips")), before);
+}
+
+#[test]
+fn of_many_that_add_the_same_clip_at_once_one_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = std::sync::Barrier::new(8);
+    let add = |frames: usize| {
+        // All look at the empty library before any of them adds.
+        let mut library = Library::open(folder.path());
+        start.wait();
+        let clips = Clips { clips: vec![clip("Ann", "walk", frames)], fps: 12.0 };
+        let added = library.add(&[Addition { clips: &clips, source: "" }], Existing::Refuse);
+        added.map(|_| frames).map_err(|error| assert!(matches!(error, AddError::Taken(_)), "{error}"))
+    };
+    let outcomes: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (1..=8).map(|frames| scope.spawn(move || add(frames))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    let added: Vec<usize> = outcomes.into_iter().flatten().collect();
+    let library = Library::open(folder.path());
+    assert_eq!(library.read(library.entries().iter()).0, [clip("Ann", "walk", added[0])]);
+    assert_eq!(added.len(), 1);
+}
+
+/// The files of a folder and what is in them.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found: Vec<_> = fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+    found.sort();
+    found.into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect()
 }

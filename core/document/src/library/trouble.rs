@@ -1,8 +1,10 @@
 //! What is wrong with a library.
 
+use super::Entry;
 use super::index::VERSION;
 use crate::clips::ClipsError;
 use crate::output::WriteError;
+use std::fmt;
 use std::path::PathBuf;
 
 /// A part of a library that cannot be used. The rest can.
@@ -81,9 +83,49 @@ pub enum Trouble {
     },
 }
 
-/// Clips could not be added. The library is as it was, or has some of the clips.
+/// Clips that must not be replaced. The text of it names the first of them, without what is to be done: each host asks for
+/// replacing in its own way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// The library's folder.
+    pub folder: PathBuf,
+    /// The first clip that is there.
+    pub first: Entry,
+    /// How many more of the added clips are there.
+    pub more: usize,
+}
+
+impl fmt::Display for Taken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Entry { file, character, motion, frames, source, .. } = &self.first;
+        write!(f, "{}: found {motion:?} by {character:?} already", self.folder.display())?;
+        let noun = if *frames == 1 { "frame" } else { "frames" };
+        write!(f, " ({file}, {frames} {noun}")?;
+        if !source.is_empty() {
+            write!(f, ", from {source:?}")?;
+        }
+        f.write_str(")")?;
+        if self.more > 0 {
+            write!(f, ", and {} more of these clips", self.more)?;
+        }
+        Ok(())
+    }
+}
+
+/// Clips could not be added. The library is as it was, except that after a [`Self::Write`] it may have some of the clips.
 #[derive(Debug, thiserror::Error)]
 pub enum AddError {
+    /// Clips of the same character and motion are there, and must not be replaced.
+    #[error("{0}, expected another character or motion, or \"replace\"")]
+    Taken(Taken),
+    /// One of the added clips would replace another.
+    #[error("found two clips {motion:?} by {character:?} to add, expected each motion of a character once")]
+    Twice {
+        /// The character.
+        character: String,
+        /// The motion.
+        motion: String,
+    },
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

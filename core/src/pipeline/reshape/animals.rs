@@ -3,7 +3,7 @@
 use super::*;
 use crate::pipeline::{ClipJob, clip};
 use crate::project::clips::Clips;
-use crate::project::library::Library;
+use crate::project::library::{Addition, Existing, Library};
 use crate::scene::limbs::{Binding, Calibration, Carried, Limb, LimbEnd, LimbSet};
 use crate::scene::template::Template;
 use crate::scene::{Part, Silent};
@@ -139,7 +139,8 @@ fn the_captured_clip_is_the_true_one_and_goes_through_a_library() {
         }
         let folder = tempfile::tempdir().unwrap();
         let mut library = Library::open(folder.path());
-        library.add(&clip, 24.0, "").unwrap();
+        let clips = Clips { clips: vec![clip.clone()], fps: 24.0 };
+        library.add(&[Addition { clips: &clips, source: "" }], Existing::Refuse).unwrap();
         let library = Library::open(folder.path());
         let (read, troubles) = library.read(library.entries().iter());
         assert!(troubles.is_empty(), "{troubles:?}");
