@@ -1,8 +1,9 @@
 """The object's layer of lines as the drawings of a document: see `drawn` for the way in.
 
-The artist's drawings are `drawings`. Those of them that were traced or followed are in `traced` too, where their strokes have numbers.
-Numbers that only tweening gave are in `matches`. A stroke without a number, or with that of an earlier stroke of its drawing, gets a new one
-in the document.
+The artist's drawings are `drawings`. So are in-betweens that the artist has changed since they were made: *Update In-betweens* makes keys
+of them, and until then too no program may take them for generated ones and replace them. Those that were traced or followed are in `traced`
+too, where their strokes have numbers. Numbers that only tweening gave are in `matches`. A stroke without a number, or with that of an earlier
+stroke of its drawing, gets a new one in the document.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..lines import doubts
 from ..lines import drawings as dr
+from ..tween import keys as tween_keys
 from ..tween import pairs as tween_pairs
 from ..tween import records as tween_records
 from . import drawn, spacings, stroke_fields
@@ -96,6 +98,8 @@ class _Layer:
     def __init__(self, ob, pegs: set[str]):
         self._ob, self._pegs, self._offset = ob, pegs, ob.rototoon.frame_offset
         (self._drawn,) = dr.read(ob, [ob.rototoon.lines_layer], None)
+        self._record = tween_records.read(ob.data).get(self._drawn.name, tween_records.Layer())
+        self._adopt(gp.find_layer(ob, self._drawn.name))
         keys = {**self._drawn.keys, **dict.fromkeys(self._drawn.blank, dr.EMPTY)}
         contents = {**keys, **self._drawn.made, **self._drawn.other}
         mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
@@ -107,6 +111,12 @@ class _Layer:
             strokes = stroke_fields.written(ob, content, mapper.at(0, frame), palette)
             self._sheets[frame] = _Sheet(content, strokes, self._numbers(frame, content, strokes))
         self._further = Further(ob)
+
+    def _adopt(self, layer) -> None:
+        """Counts in-betweens that the artist has changed as the artist's drawings."""
+        if self._drawn.other:
+            for frame in self._drawn.other.keys() & set(tween_keys.frames_of(layer, self._record).edited):
+                self._drawn.keys[frame] = self._drawn.other.pop(frame)
 
     def _numbers(self, frame: int, content: st.Content, strokes) -> dict[int, int]:
         """The number of each stroke. A copied stroke has its original's number; the second one counts as a new stroke."""
@@ -143,12 +153,12 @@ class _Layer:
         return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), pegs)
 
     def _drawings(self) -> list[dict[str, Any]]:
-        spans = tween_records.read(self._ob.data).get(self._drawn.name, tween_records.Layer()).spans
         found = []
         for frame, after in itertools.zip_longest(self._keys, self._keys[1:]):
             fields = dict(self._further.of_drawing(frame - self._offset))
-            span = spans.get(frame)
-            if span is not None and span.last == after:
+            # As Update In-betweens does: both halves of a span that a new key divides have its choices.
+            span = self._record.holding(frame, after) if after is not None else None
+            if span is not None:
                 spacing = spacings.written(span.choices, frame, after, fields.get("spacing", "smooth"))
                 fields = {**fields, "spacing": spacing}
             if fields.get("spacing") in ("smooth", None):

@@ -168,6 +168,33 @@ def test_a_changed_in_between_of_a_document_is_kept(addon, film, tmp_path):
     assert all(np.array_equal(after[number], before[number]) for number in before)
 
 
+def test_an_in_between_that_the_artist_changed_goes_out_as_a_drawing(addon, film, tmp_path):
+    ob = tweened(addon)
+    moved(addon, ob, 3)
+    before = {frame: ls.strokes(addon, ob, "Lines", frame) for frame in (3, 4)}
+    document, back = again(tmp_path / "changed.json")
+    assert kinds(addon, ob, "Lines")[3] == MADE, "the layer is left as it is"
+    assert [(each["frame"], each.get("spacing")) for each in document["drawings"]] == [(1, "ease_in"), (3, "ease_in"), (6, None)]
+    assert [each["frame"] for each in document["in_betweens"]] == [2, 4, 5]
+    assert [(each["frame"], each["next"]) for each in document["matches"]] == [(1, 3), (3, 6)]
+    assert kinds(addon, back, "Lines") == {**dict.fromkeys(range(1, 7), MADE), 1: KEY, 3: KEY, 6: KEY}
+    for frame, strokes in before.items():
+        now = ls.strokes(addon, back, "Lines", frame)
+        assert list(now) == list(strokes) and all(np.allclose(now[n], strokes[n], atol=1e-2) for n in now)
+
+
+@pytest.mark.parametrize("known", [True, False])
+def test_a_recoloured_in_between_goes_out_as_a_drawing_of_a_renamed_layer_too(addon, film, tmp_path, known):
+    gp, ob = addon("blender.grease_pencil"), tweened(addon)
+    handle = handle_of(addon, ob, "Lines", 4)
+    gp.put(handle, "radius", gp.value(handle, "radius", int(gp.offsets(handle)[-1])) * 2)
+    if not known:
+        del ob.data["rototoon_tween"]
+    document = exported(tmp_path / "recoloured.json")
+    assert [each["frame"] for each in document["drawings"]] == [1, 4, 6]
+    assert [each["frame"] for each in document["in_betweens"]] == [2, 3, 5]
+
+
 def test_colours_of_in_betweens_need_no_materials_of_their_own(addon, film, pictures, tmp_path):
     drawings = [{"frame": frame, "strokes": [line(4, colour=[red, 0, 0])]} for frame, red in ((1, 0.0), (4, 0.9))]
     between = [{"frame": frame, "strokes": [line(4, track=0, colour=[red, 0, 0], opacity=1)]} for frame, red in ((2, 0.3), (3, 0.6))]
