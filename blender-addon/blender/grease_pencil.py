@@ -308,9 +308,14 @@ def value(drawing: bpy.types.bpy_struct, name: str, count: int) -> np.ndarray:
     return blank(name, count) if found is None else found
 
 
-def blank(name: str, count: int) -> np.ndarray:
-    """`count` rows of an attribute's default value."""
-    _, kind, width = _LAYOUT[TYPES[name][0]]
+def is_numeric(data_type: str) -> bool:
+    """Whether the values of attributes of a data type can be read and written."""
+    return data_type in _LAYOUT
+
+
+def blank(name: str, count: int, data_type: str | None = None) -> np.ndarray:
+    """`count` rows of an attribute's default value. `data_type` is that of an attribute that is not in `TYPES`."""
+    _, kind, width = _LAYOUT[data_type or TYPES[name][0]]
     return np.full(count if width == 1 else (count, width), DEFAULTS.get(name, 0), kind)
 
 
@@ -354,6 +359,8 @@ class Rows:
 
     sizes: np.ndarray
     values: dict[str, np.ndarray] = field(default_factory=dict)
+    own: dict[str, tuple[str, str]] = field(default_factory=dict)
+    """Data type and domain of attributes that are not in `TYPES` (see `own_attributes`)."""
 
 
 def has_made(drawing: bpy.types.bpy_struct, rows: Rows) -> bool:
@@ -388,6 +395,10 @@ def replace_made(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
 def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.ndarray) -> bool:
     """Whether the strokes from `first` on equal `rows`."""
     for name, values in rows.values.items():
+        if name in rows.own and has(drawing, name) and not _is_of(drawing, name, rows.own[name]):
+            continue
+        if not has(drawing, name):
+            return False
         curve = name != "position" and domain(drawing, name) == "CURVE"
         found = get(drawing, name, len(starts) - 1 if curve else int(starts[-1]))
         if found is None:
@@ -396,6 +407,12 @@ def _holds(drawing: bpy.types.bpy_struct, rows: Rows, first: int, starts: np.nda
         if not np.array_equal(found, np.asarray(values).astype(found.dtype)):
             return False
     return True
+
+
+def _is_of(drawing: bpy.types.bpy_struct, name: str, kind: tuple[str, str]) -> bool:
+    """Whether an attribute that a drawing has is of a data type and a domain."""
+    attribute = drawing.attributes[name]
+    return (attribute.data_type, attribute.domain) == kind
 
 
 def append(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
@@ -413,6 +430,12 @@ def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
         drawing.tag_positions_changed()
         return
     for name, values in rows.values.items():
+        if name in rows.own:
+            if not has(drawing, name):
+                make(drawing, name, *rows.own[name])
+            elif not _is_of(drawing, name, rows.own[name]):
+                # Another one of the same name, which is the artist's.
+                continue
         total = points if name == "position" or domain(drawing, name) == "POINT" else strokes
         if len(values) < total:
             head = positions(drawing, points) if name == "position" else value(drawing, name, total)

@@ -93,9 +93,10 @@ def of_rows(rows: gp.Rows) -> Content:
     """The content of a drawing that has only these strokes."""
     content = Content(rows.sizes, np.full(len(rows.sizes), POLY, np.int8))
     for name, values in rows.values.items():
-        (content.point if name == "position" or gp.TYPES[name][1] == "POINT" else content.curve)[name] = values
-        if name != "position":
-            content.kinds[name] = gp.TYPES[name][0]
+        kind, domain = ("", "POINT") if name == "position" else rows.own.get(name) or gp.TYPES[name]
+        (content.point if domain == "POINT" else content.curve)[name] = values
+        if kind:
+            content.kinds[name] = kind
     return content
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import guard, own_attributes
 from ..blender.errors import Changed
 from ..common import jobs
 from . import correspondence
@@ -74,6 +74,8 @@ class Drawing:
     kind: str
     names: frozenset[str]
     """The attributes that it has."""
+    own: dict[str, own_attributes.Kind] = field(default_factory=dict)
+    """Those of them that are the artist's own, if it has strokes of the artist."""
     strokes: list[Stroke] = field(default_factory=list)
     _values: dict[str, np.ndarray] = field(default_factory=dict)
 
@@ -98,8 +100,10 @@ class Drawing:
     def take(self, handle, *names: str) -> None:
         """Reads attributes from `handle`, which is this drawing or a copy."""
         for name in names:
-            count = len(self.points) if gp.TYPES[name][1] == "POINT" else len(self.starts) - 1
-            values = gp.value(handle, name, count) if name in self.names else gp.blank(name, count)
+            kind, domain = self.own.get(name) or gp.TYPES[name]
+            count = len(self.points) if domain == "POINT" else len(self.starts) - 1
+            values = gp.get(handle, name, count) if name in self.names else None
+            values = gp.blank(name, count, kind) if values is None else values
             values.flags.writeable = False
             self._values[name] = values
 
@@ -137,6 +141,10 @@ class Contours:
     def closed_names(self) -> tuple[str, ...]:
         """Names of the locked layers."""
         return tuple(self.layer_names[index] for index in sorted(self.closed))
+
+    def own(self) -> dict[str, own_attributes.Kind]:
+        """The artist's own attributes on all drawings."""
+        return own_attributes.first_of(self.drawings[place].own for place in sorted(self.drawings, key=lambda place: (place[1], place[0])))
 
     def part(self, number: int) -> Part | None:
         """The part with a number."""
@@ -225,7 +233,8 @@ def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...
     if drawing.value(gp.MADE).any():
         drawing.take(handle, *_OF_MADE, *more)
     if not drawing.value(gp.MADE).all():
-        drawing.take(handle, *POINT_STYLE, *CURVE_STYLE)
+        drawing.own = own_attributes.of(handle)
+        drawing.take(handle, *POINT_STYLE, *CURVE_STYLE, *drawing.own)
     part, cyclic = drawing.value(gp.PART), drawing.value("cyclic")
     made, control = drawing.value(gp.MADE), drawing.value(gp.CONTROL)
     if kind != gp.GENERATED and made.all():

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import marks
+from ..blender import marks, own_attributes
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from . import writing
@@ -82,7 +82,8 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
     own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
     old = {frame for frame in gp.drawings(layer) if frame not in own}
     parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
-    style = {part.number: writing.styles(part, found) for part in parts}
+    kinds = found.own()
+    style = {part.number: writing.styles(part, found, kinds) for part in parts}
     frames = sorted({frame for _, frame in curves} - own)
     ends = writing.ends_of(frames, own | set(frames), ob.rototoon.last + ob.rototoon.frame_offset)
     gp.remove_frames(layer, sorted(old - set(frames)))
@@ -96,7 +97,7 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
             for part in parts
             if curves.get((part.number, frame))
         ]
-        rows = _rows(strokes)
+        rows = _rows(strokes, kinds)
         if not gp.has_made(drawings[frame][0], rows):
             gp.replace_made(drawings[frame][0], rows)
         written += len(strokes)
@@ -124,22 +125,24 @@ def _stroke(part: Part, frame: int, segments: list[np.ndarray], style, mapper: M
     high = (low + 1) % part.count if part.closed else np.minimum(low + 1, part.count - 1)
     share = place - low
     for name, values in point.items():
-        now = writing.blend(values, frames, wanted)[0]
+        now = writing.mixed(name, values, frames, wanted)[0]
         weight = share[:, None] if now.ndim > 1 else share
-        stroke[name] = now[low] * (1 - weight) + now[high] * weight
+        blended = own_attributes.is_blended(now)
+        stroke[name] = now[low] * (1 - weight) + now[high] * weight if blended else now[np.where(share < 0.5, low, high)]
     for name, values in curve.items():
-        stroke[name] = writing.held(values, frames, wanted)
+        stroke[name] = writing.mixed(name, values, frames, wanted)
     return stroke
 
 
-def _rows(strokes: list[dict[str, np.ndarray]]) -> gp.Rows:
-    rows = gp.Rows(np.array([len(stroke["position"]) for stroke in strokes], np.int32))
+def _rows(strokes: list[dict[str, np.ndarray]], kinds: dict[str, own_attributes.Kind]) -> gp.Rows:
+    rows = gp.Rows(np.array([len(stroke["position"]) for stroke in strokes], np.int32), own=kinds)
     names = {name for stroke in strokes for name in stroke}
     for name in sorted(names):
         values = []
         for stroke in strokes:
-            count = len(stroke["position"]) if gp.TYPES.get(name, ("", "POINT"))[1] == "POINT" else 1
-            values.append(stroke[name] if name in stroke else gp.blank(name, count))
+            kind, domain = kinds.get(name) or gp.TYPES.get(name, ("", "POINT"))
+            count = len(stroke["position"]) if domain == "POINT" else 1
+            values.append(stroke[name] if name in stroke else gp.blank(name, count, kind or None))
         rows.values[name] = np.concatenate(values)
     return rows
 

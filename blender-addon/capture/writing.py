@@ -1,7 +1,7 @@
 """Tracked contours as strokes on generated frames beside the artist's keys.
 
 All frames of a layer are laid out in a few large arrays. Then each drawing gets all its strokes with one call, and each attribute
-with one more. Radius, opacity, colours, material and fill come from the key strokes, blended in time.
+with one more. Radius, opacity, colours, material, fill and the artist's own attributes come from the key strokes, blended in time.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import own_attributes
 from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
@@ -51,6 +52,8 @@ class Block:
     """By attribute: (F, points) or (F, points, k)."""
     curve: dict[str, np.ndarray] = field(default_factory=dict)
     """By attribute: (F, P) or (F, P, k)."""
+    own: dict[str, own_attributes.Kind] = field(default_factory=dict)
+    """The artist's own attributes among them."""
     order: np.ndarray | None = None
     """(F, P): the parts from back to front on each frame; `None` if they are in that order."""
     last: int | None = None
@@ -59,10 +62,12 @@ class Block:
     """Scene frames on which a part of the layer is hidden: a key does not show there."""
 
 
-def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
+def styles(
+    part: Part, found: Contours, own: Mapping[str, own_attributes.Kind]
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], list[int]]:
     """Point styles (K, N[, k]) and curve styles (K[, k]) of a part's K keys, and the frames of the keys.
 
-    Only attributes that a key drawing has, or that have a default.
+    Only attributes that a key drawing has, or that have a default. `own` are the artist's own ones.
     """
     frames = sorted(part.keys)
     point, curve = {}, {}
@@ -76,11 +81,27 @@ def styles(part: Part, found: Contours) -> tuple[dict[str, np.ndarray], dict[str
     if "fill_id" in curve:
         curve["fill_id"] = np.where(curve["fill_id"] != 0, gp.FILL_BASE + part.number, 0)
     curve["cyclic"] = curve["cyclic"] | part.closed
+    for name, kind in own.items():
+        if any(d.own.get(name) == kind for d in drawings):
+            into = point if kind[1] == "POINT" else curve
+            into[name] = np.stack([_own_style(part, part.keys[f], d, name, kind) for f, d in zip(frames, drawings)])
     return point, curve, frames
 
 
 def _point_style(part: Part, stroke: Stroke, drawing: Drawing, name: str) -> np.ndarray:
-    return correspondence.sample(drawing.value(name)[stroke.span], stroke.where, part.closed)
+    values = drawing.value(name)[stroke.span]
+    if own_attributes.is_blended(values):
+        return correspondence.sample(values, stroke.where, part.closed)
+    nearest = np.rint(stroke.where).astype(int)
+    return values[nearest % len(values) if part.closed else np.minimum(nearest, len(values) - 1)]
+
+
+def _own_style(part: Part, stroke: Stroke, drawing: Drawing, name: str, kind: own_attributes.Kind) -> np.ndarray:
+    points = kind[1] == "POINT"
+    if drawing.own.get(name) != kind:
+        values = gp.blank(name, part.count if points else 1, kind[0])
+        return values if points else values[0]
+    return _point_style(part, stroke, drawing, name) if points else drawing.value(name)[stroke.index]
 
 
 def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
@@ -99,6 +120,12 @@ def blend(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarr
 def held(values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
     """Styles (K, …) of the key at or before each of the frames `wanted`."""
     return values[np.clip(np.searchsorted(frames, wanted, side="right") - 1, 0, len(frames) - 1)]
+
+
+def mixed(name: str, values: np.ndarray, frames: list[int], wanted: np.ndarray) -> np.ndarray:
+    """Styles (K, …) of key frames on the frames `wanted`: blended if they can be, but Blender's styles of whole strokes are held."""
+    blended = own_attributes.is_blended(values) and (name in POINT_STYLE or own_attributes.is_own(name))
+    return blend(values, frames, wanted) if blended else held(values, frames, wanted)
 
 
 def lay_out(
@@ -122,6 +149,7 @@ def laying_out(
     for name in (gp.PIN, gp.CONFIDENCE, gp.CONTROL):
         block.point[name] = _blanks(name, count, total)
         yield 0.0
+    block.own = found.own()
     # What tracking wrote is where the points are.
     block.point["position"] = block.point[gp.TRACKED] = np.zeros((count, total, 3), np.float32)
     for name in (gp.PART, gp.MADE, gp.CENTER):
@@ -144,9 +172,9 @@ def limit(block: Block, ob, layer: int, found: Contours) -> None:
     block.hidden = frozenset(frame for span in hidden for frame in span)
 
 
-def _blanks(name: str, frames: int, count: int) -> np.ndarray:
-    """(frames, count[, k]): an attribute's default values."""
-    like = gp.blank(name, count)
+def _blanks(name: str, frames: int, count: int, own: own_attributes.Kind | None = None) -> np.ndarray:
+    """(frames, count[, k]): an attribute's default values. `own` is the kind of one of the artist's own."""
+    like = gp.blank(name, count, own[0] if own else None)
     if not like.any():
         # The system gives zeros for nothing.
         return np.zeros((frames, *like.shape), like.dtype)
@@ -183,15 +211,15 @@ def _fill_part(block: Block, index: int, part: Part, track: Track, mapper: Mappe
 
 
 def _fill_style(block: Block, index: int, part: Part, found: Contours) -> None:
-    point, curve, frames = styles(part, found)
-    for name, values in point.items():
-        if name not in block.point:
-            block.point[name] = _blanks(name, len(block.frames), int(block.sizes.sum()))
-        block.point[name][:, block.columns[index]] = blend(values, frames, block.frames)
-    for name, values in curve.items():
-        if name not in block.curve:
-            block.curve[name] = _blanks(name, len(block.frames), len(block.sizes))
-        block.curve[name][:, index] = held(values, frames, block.frames)
+    point, curve, frames = styles(part, found, block.own)
+    for into, given, count, place in (
+        (block.point, point, int(block.sizes.sum()), block.columns[index]),
+        (block.curve, curve, len(block.sizes), index),
+    ):
+        for name, values in given.items():
+            if name not in into:
+                into[name] = _blanks(name, len(block.frames), count, block.own.get(name))
+            into[name][:, place] = mixed(name, values, frames, block.frames)
 
 
 def write(layer, block: Block, before: Iterable[int]) -> int:
@@ -279,7 +307,7 @@ def rows_of(block: Block, row: int) -> gp.Rows:
     present = block.present[row]
     if block.order is not None:
         return _ordered(block, row)
-    rows = gp.Rows(block.sizes[present])
+    rows = gp.Rows(block.sizes[present], own=block.own)
     if present.all():
         rows.values = {name: values[row] for name, values in block.point.items()}
         rows.values |= {name: values[row] for name, values in block.curve.items()}
@@ -293,7 +321,7 @@ def rows_of(block: Block, row: int) -> gp.Rows:
 def _ordered(block: Block, row: int) -> gp.Rows:
     strokes = block.order[row][block.present[row][block.order[row]]]
     points = np.concatenate([np.arange(block.columns[i].start, block.columns[i].stop) for i in strokes])
-    rows = gp.Rows(block.sizes[strokes])
+    rows = gp.Rows(block.sizes[strokes], own=block.own)
     rows.values = {name: values[row][points] for name, values in block.point.items()}
     rows.values |= {name: values[row][strokes] for name, values in block.curve.items()}
     return rows

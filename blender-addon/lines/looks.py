@@ -1,6 +1,6 @@
 """How traced strokes look: like the artist's strokes of the same number, otherwise like the ink.
 
-A stroke of the artist gives material, radius, opacity, colours and caps. Values of points are taken at the same share of the length,
+A stroke of the artist gives material, radius, opacity, colours, caps and attributes of the artist's own. Values of points are taken at the same share of the length,
 and blended in time between two drawings of the artist. Other strokes get the width of the ink as radius, opacity 1, and a material of
 the ink's colour.
 """
@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import line_materials
+from ..blender import line_materials, own_attributes
 from ..blender import strokes as st
 from ..capture.contours import CURVE_STYLE, POINT_STYLE
 from .drawings import shares
@@ -62,10 +62,18 @@ class Looks:
         self.sources.setdefault(number, {}).setdefault(frame, source)
 
     def names(self) -> list[str]:
-        """The attributes that any of the strokes has."""
-        contents = {id(each.content): each.content for by_frame in self.sources.values() for each in by_frame.values()}
-        have = {name for content in contents.values() for name in (*content.point, *content.curve)}
+        """The attributes of a look that any of the strokes has."""
+        have = {name for content in self._contents() for name in (*content.point, *content.curve)}
         return [name for name in (*POINT_STYLE, *CURVE_STYLE) if name in have]
+
+    def own(self) -> dict[str, own_attributes.Kind]:
+        """The artist's own attributes that any of the strokes has."""
+        return own_attributes.first_of(_own_of(content) for content in self._contents())
+
+    def _contents(self) -> list[st.Content]:
+        """The drawings in the order of their frames."""
+        by_frame = sorted(((frame, each.content) for own in self.sources.values() for frame, each in own.items()), key=lambda pair: pair[0])
+        return list({id(content): content for _, content in by_frame}.values())
 
     def around(self, number: int, frame: int) -> tuple[Source, Source, float] | None:
         """The strokes at or before and after a frame, and the share of the way between them."""
@@ -105,6 +113,34 @@ def of_points(found: tuple[Source, Source, float], name: str, where: np.ndarray)
 def of_stroke(source: Source, name: str):
     """The value of a stroke attribute."""
     return source.content.strokes(name)[source.index]
+
+
+def of_own(found: tuple[Source, Source, float], name: str, kind: own_attributes.Kind, where: np.ndarray):
+    """The values of one of the artist's own attributes: of points at shares of the length, or one of the stroke."""
+    before, after, share = found
+    values = _own_of_source(before, name, kind, where)
+    if share == 0.0 or not own_attributes.is_blended(values):
+        return values
+    return values * (1 - share) + _own_of_source(after, name, kind, where) * share
+
+
+def _own_of_source(source: Source, name: str, kind: own_attributes.Kind, where: np.ndarray):
+    points = kind[1] == "POINT"
+    if _own_of(source.content).get(name) != kind:
+        return gp.blank(name, len(where) if points else 1, kind[0])
+    if not points:
+        return source.content.curve[name][source.index : source.index + 1]
+    values = source.content.point[name][source.span]
+    if own_attributes.is_blended(values):
+        return sampled(source, name, where)
+    # The nearest point, the earlier one of two.
+    middles = (source.shares[1:] + source.shares[:-1]) / 2
+    return values[np.searchsorted(middles, where)]
+
+
+def _own_of(content: st.Content) -> dict[str, own_attributes.Kind]:
+    sides = ((content.point, "POINT"), (content.curve, "CURVE"))
+    return {name: (content.kinds[name], domain) for side, domain in sides for name in side if own_attributes.is_own(name)}
 
 
 def ink_lab(colour: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from rototoon import Session
 from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, marks
+from ..blender import guard, marks, own_attributes
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
@@ -54,6 +54,8 @@ class Done:
 Materials = Mapping[tuple[int, bool], int]
 """By number, and whether it is a shape: the index of a material."""
 _NONE: Materials = MappingProxyType({})
+Own = Mapping[str, own_attributes.Kind]
+_NO_OWN: Own = MappingProxyType({})
 
 BREAK = 0.3
 """Share of the length of lines that belongs to strokes that end or begin, from which a frame is said."""
@@ -233,9 +235,9 @@ def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, recor
     placed = {frame: strokes for frame, strokes in placed.items() if strokes is not None}
     gp.remove_frames(target, sorted(held & layer.made.keys()))
     gp.make_frames(target, placed, gp.GENERATED)
-    handles, names, materials = gp.drawings(target), shown.names(), materials_of(ob, placed, shown, known)
+    handles, names, own, materials = gp.drawings(target), shown.names(), shown.own(), materials_of(ob, placed, shown, known)
     for count, (frame, strokes) in enumerate(placed.items(), 1):
-        rows = rows_of(frame, strokes, shown, names, materials, mapper.at(k, frame))
+        rows = rows_of(frame, strokes, shown, names, materials, mapper.at(k, frame), own)
         gp.replace_made(handles[frame][0], rows)
         if gp.drawings(target)[frame][1] != gp.GENERATED:
             gp.set_keyframe_type(target, {frame: gp.GENERATED})
@@ -297,14 +299,18 @@ def materials_of(ob, placed, shown: looks.Looks, known: Materials = _NONE) -> Ma
     return found
 
 
-def rows_of(frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials: Materials, mapping) -> gp.Rows:
-    """The strokes of a frame as attributes."""
-    rows = gp.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32))
+def rows_of(
+    frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials: Materials, mapping, own: Own = _NO_OWN
+) -> gp.Rows:
+    """The strokes of a frame as attributes. `names` and `own` are those of their looks."""
+    rows = gp.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32), own=dict(own))
     points = np.concatenate([stroke.points for stroke in strokes]) if strokes else np.zeros((0, 2))
     total, count = len(points), len(strokes)
     places = mapping.to_layer(points) if total else np.zeros((0, 3))
     for name in dict.fromkeys(("radius", "opacity", *names)):
         rows.values[name] = gp.blank(name, total if gp.TYPES[name][1] == "POINT" else count)
+    for name, (kind, domain) in own.items():
+        rows.values[name] = gp.blank(name, total if domain == "POINT" else count, kind)
     rows.values["position"] = places.astype(np.float32)
     rows.values["material_index"] = gp.blank("material_index", count)
     rows.values["cyclic"] = np.array([stroke.closed for stroke in strokes], bool)
@@ -345,6 +351,9 @@ def _dress(rows: gp.Rows, frame: int, strokes: list[Placed], shown: looks.Looks,
                 rows.values[name][starts[i] : starts[i + 1]] = looks.of_points(found, name, where)
             elif name != "cyclic":
                 rows.values[name][i] = looks.of_stroke(found[0], name)
+        for name, kind in rows.own.items():
+            span = slice(starts[i], starts[i + 1]) if kind[1] == "POINT" else slice(i, i + 1)
+            rows.values[name][span] = looks.of_own(found, name, kind, where)
 
 
 def _radii(points: np.ndarray, widths: np.ndarray, places: np.ndarray, mapping) -> np.ndarray:
