@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shots
 from mathutils import Matrix
-from test_style import LINES, figure, performer
+from test_style import figure, performer, second_drawing
 
 
 @pytest.fixture(autouse=True)
@@ -23,12 +23,7 @@ def doll(addon, tmp_path):
     performer(addon, folder)
     assert bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf) == {"FINISHED"}
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    folder = tmp_path / "doll"
-    folder.mkdir()
-    ob = shots.set_up(folder)
-    shots.draw(addon, ob, 1, figure())
-    shots.limb_lines(addon, ob, figure(), LINES)
-    ob.rototoon.clips_folder = shelf
+    ob = second_drawing(addon, tmp_path, shelf)
     names = [part.name for part in ob.rototoon.parts]
     bpy.ops.rototoon.depth_mark(front=names[2], behind=names[1])
     bpy.ops.rototoon.depth_mark(front=names[1], behind=names[0])

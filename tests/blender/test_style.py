@@ -81,6 +81,18 @@ def test_lines_across_limbs_make_limbs(addon, tmp_path):
     assert json.loads(path.read_text())["limbs"] == made
 
 
+def second_drawing(addon, tmp_path, shelf, contours=None):
+    """A drawing on one frame with limbs, in a folder of its own. It has the library `shelf`."""
+    folder = tmp_path / "doll"
+    folder.mkdir()
+    ob = shots.set_up(folder)
+    contours = figure() if contours is None else contours
+    shots.draw(addon, ob, 1, contours)
+    shots.limb_lines(addon, ob, contours, LINES)
+    ob.rototoon.clips_folder = shelf
+    return ob
+
+
 def test_capture_clip_style_reshape(addon, tmp_path):
     shelf = str(tmp_path / "clips")
     for character, motion, swing, lean in (
@@ -92,14 +104,8 @@ def test_capture_clip_style_reshape(addon, tmp_path):
         folder.mkdir()
         ob = performer(addon, folder, swing, lean)
         assert bpy.ops.rototoon.save_clip(character=character, motion=motion, folder=shelf) == {"FINISHED"}
-    # A second drawing: one frame, a little larger.
-    folder = tmp_path / "doll"
-    folder.mkdir()
-    ob = shots.set_up(folder)
-    doll = [(contour - (60, 80)) * 1.05 + (80, 82) for contour in figure()]
-    shots.draw(addon, ob, 1, doll)
-    shots.limb_lines(addon, ob, doll, LINES)
-    ob.rototoon.clips_folder = shelf
+    # A little larger.
+    ob = second_drawing(addon, tmp_path, shelf, [(contour - (60, 80)) * 1.05 + (80, 82) for contour in figure()])
     before = dict(shots.pixels(addon, ob, 1))
     names = [part.name for part in ob.rototoon.parts]
     bpy.ops.rototoon.depth_mark(front=names[0], behind=names[1])
@@ -215,12 +221,7 @@ def test_reshaping_again_leaves_corrected_contours(addon, tmp_path):
         folder.mkdir()
         performer(addon, folder, swing)
         bpy.ops.rototoon.save_clip(character="plain", motion=motion, folder=shelf)
-    folder = tmp_path / "doll"
-    folder.mkdir()
-    ob = shots.set_up(folder)
-    shots.draw(addon, ob, 1, figure())
-    shots.limb_lines(addon, ob, figure(), LINES)
-    ob.rototoon.clips_folder = shelf
+    ob = second_drawing(addon, tmp_path, shelf)
     bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk")
     shots.move(addon, ob, 5, 3, (6.0, -3.0), which=[3])
     mine, others = dict(shots.pixels(addon, ob, 5)), dict(shots.pixels(addon, ob, 4))
@@ -241,11 +242,7 @@ def test_a_clip_that_is_not_there_is_named_with_those_that_are(addon, tmp_path):
     shelf = str(tmp_path / "clips")
     performer(addon, tmp_path)
     bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf)
-    folder = tmp_path / "doll"
-    folder.mkdir()
-    ob = shots.set_up(folder)
-    shots.draw(addon, ob, 1, figure())
-    shots.limb_lines(addon, ob, figure(), LINES)
+    second_drawing(addon, tmp_path, shelf)
     for character, motion, text in (
         ("old", "walk", 'has no clip "walk" by "old"; "plain" has it: choose one of its 1 clip'),
         ("plain", "run", 'has no clip "run" by "plain"; "plain" has "walk"'),
