@@ -1,0 +1,99 @@
+"""Pairs of strokes that the artist decides, in Match Strokes, and what becomes of them."""
+
+import bpy
+import numpy as np
+import pytest
+from test_strokes import content, drawing
+from test_tween import KEYS, drawn_again, figure, keyed, mark, tracks
+
+pytestmark = pytest.mark.usefixtures("library")
+
+
+def pairing_of(addon, ob, frame=1):
+    module = addon("tween.pairing")
+    found = module.Pairing(ob, list(ob.data.layers), frame)
+    found.take(found.match())
+    return module, found
+
+
+def test_pairs_made_by_hand_are_kept_through_a_file(addon, tmp_path):
+    ob = keyed(addon)
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.match_strokes()
+    assert tracks(addon, ob, 1) == tracks(addon, ob, 9)
+    module, found = pairing_of(addon, ob, 4)
+    assert not found.click(module.Item(0, 0, 0))
+    assert found.click(module.Item(0, 1, 1))
+    found.take(found.match())
+    assert found.row_of(module.Item(0, 0, 0)).later == 1 and found.row_of(module.Item(0, 0, 0)).by_hand
+    found.store()
+    path = str(tmp_path / "pairs.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    ob = bpy.data.objects["Drawing"]
+    bpy.context.view_layer.objects.active = ob
+    bpy.ops.rototoon.in_between()
+    numbers = tracks(addon, ob, 1)
+    assert tracks(addon, ob, 9)[1] == numbers[0]
+    # The pair goes with the strokes, whatever their order.
+    handle = drawing(addon, ob, "Lines", 9)
+    handle.reorder_strokes([2, 1, 0]) if hasattr(handle, "reorder_strokes") else None
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], range(2, 9))
+    before = content(addon, ob, "Lines", 9).curve["rototoon_before"]
+    bpy.ops.rototoon.in_between()
+    assert tracks(addon, ob, 9)[int(np.flatnonzero(before)[0])] == numbers[0]
+
+
+def test_pairs_touch_their_span_alone(addon):
+    ob = keyed(addon, KEYS)
+    bpy.ops.rototoon.in_between(frames="ALL", spacing="LINEAR")
+    mark(addon, ob)
+    module, found = pairing_of(addon, ob, 20)
+    found.click(module.Item(0, 1, 2))
+    assert found.click(module.Item(0, 0, 0))
+    bpy.ops.rototoon.update_in_betweens()
+    assert drawn_again(addon, ob) == list(range(18, 25))
+    # Behind it strokes have the numbers of those that they follow from now on.
+    for first, last in zip(KEYS[3:], KEYS[4:]):
+        assert all(tracks(addon, ob, f) == tracks(addon, ob, first) for f in range(first, last + 1))
+
+
+def test_strokes_are_freed_and_decisions_taken_back(addon):
+    ob = keyed(addon)
+    module, found = pairing_of(addon, ob)
+    item = module.Item(0, 0, 1)
+    assert found.free(item)
+    found.take(found.match())
+    row = found.row_of(item)
+    assert (row.later, row.by_hand) == (-1, True)
+    assert [m.label for m in found.marks()].count("–") == 2
+    assert found.free(item)
+    found.take(found.match())
+    assert found.row_of(item).later == 1 and not found.row_of(item).by_hand
+    found.click(item)
+    found.click(module.Item(0, 1, 0))
+    assert found.free(module.Item(0, 1, 2))
+    found.take(found.match())
+    assert "2 decided by hand" in found.summary()
+    assert found.undo() and found.undo() and found.undo() and found.undo() and not found.undo()
+    found.take(found.match())
+    assert found.summary() == "3 pairs"
+    assert found.free(None) is False and found.click(None) is False
+
+
+def test_clicks_find_strokes(addon):
+    ob = keyed(addon)
+    module, found = pairing_of(addon, ob)
+    # The front view, 100 pixels a unit, (0, 0) in the middle of 800 by 600.
+    view = np.array([[0.25, 0, 0, 0], [0, 0, 1 / 3, 0], [0, 0, 0, 0], [0, 0, 0, 1]])
+    size = (800, 600)
+    at = lambda p: (400 + 100 * p[0], 300 + 100 * p[1])  # noqa: E731
+    first, second = figure(0, 0), figure(1.5, 0.3)
+    assert found.pick(at(first[1][9] + [0.05, 0]), view, size) == module.Item(0, 0, 1)
+    assert found.pick(at(second[0][20]), view, size) == module.Item(0, 1, 0)
+    assert found.pick((5, 5), view, size) is None
+    found.click(module.Item(0, 1, 0))
+    assert found.marks()[[m.side for m in found.marks()].index(1)].colour == module.PICKED
+    # With a stroke of the later key picked, one of the earlier key is looked for first.
+    across = found.pick(at(second[0][3]), view, size)
+    assert across is None or across.side == 0 or across == module.Item(0, 1, 0)
