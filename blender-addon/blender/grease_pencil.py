@@ -475,41 +475,6 @@ def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.t
     append(target, rows)
 
 
-def selected_points(drawing: bpy.types.bpy_struct) -> np.ndarray:
-    """Which points are selected in edit mode. Without a stored selection all are, as in Blender itself."""
-    starts = offsets(drawing)
-    attribute = drawing.attributes.get(".selection")
-    if attribute is None:
-        return np.ones(int(starts[-1]), np.bool_)
-    if attribute.domain == "CURVE":
-        return np.repeat(get(drawing, ".selection", len(starts) - 1), np.diff(starts))
-    return get(drawing, ".selection", int(starts[-1]))
-
-
-def select_points(drawing: bpy.types.bpy_struct, chosen: np.ndarray) -> None:
-    """Selects only these points for edit mode."""
-    attribute = drawing.attributes.get(".selection")
-    if attribute is not None and (attribute.domain, attribute.data_type) != ("POINT", "BOOLEAN"):
-        drawing.attributes.remove(attribute)
-        attribute = None
-    if attribute is None:
-        attribute = drawing.attributes.new(".selection", "BOOLEAN", "POINT")
-    attribute.data.foreach_set("value", np.ascontiguousarray(chosen, bool))
-
-
-def selected_strokes(drawing: bpy.types.bpy_struct) -> np.ndarray:
-    """Which strokes have a selected point in edit mode. Without a stored selection none has."""
-    starts = offsets(drawing)
-    attribute = drawing.attributes.get(".selection")
-    if attribute is None:
-        return np.zeros(len(starts) - 1, bool)
-    values = np.zeros(len(attribute.data), bool)
-    attribute.data.foreach_get("value", values)
-    if len(values) == len(starts) - 1 and attribute.domain == "CURVE":
-        return values
-    return np.array([values[a:b].any() for a, b in zip(starts, starts[1:])], bool)
-
-
 def new_object(name: str, collection: bpy.types.Collection) -> bpy.types.Object:
     """A new Grease Pencil object with the material Rototoon Ink, linked to `collection`."""
     data = datablocks().new(name)

@@ -17,7 +17,7 @@ import numpy as np
 from rototoon.style import BODIES, Skeleton
 
 from ..blender import grease_pencil as gp
-from ..blender import placement
+from ..blender import placement, selection
 from ..blender.errors import Problem
 from ..capture import document
 from ..common import kept
@@ -33,7 +33,7 @@ def name_lines(ob, frame: int, point: str) -> int:
     handle = _drawing(ob, frame)
     strokes = len(gp.offsets(handle)) - 1
     numbers = gp.value(handle, gp.KEY_POINT, strokes)
-    chosen = np.flatnonzero(gp.selected_strokes(handle))
+    chosen = np.flatnonzero(selection.selected_strokes(handle))
     if len(chosen) == 0:
         chosen = np.flatnonzero(numbers == 0)[-1:]
     if len(chosen) == 0:

@@ -55,7 +55,7 @@ def test_one_goes_from_one_to_the_next(addon, doubted):
         went.append((scene.frame_current, settings.doubt_number))
         handle = handle_of(addon, doubted, "Lines", scene.frame_current)
         tracks = attribute(addon, doubted, "Lines", scene.frame_current, gp.TRACK)
-        assert tracks[gp.selected_strokes(handle)].tolist() == [settings.doubt_number]
+        assert tracks[addon("blender.selection").selected_strokes(handle)].tolist() == [settings.doubt_number]
     assert went == [(3, 2), (5, 1), (5, 2), (3, 2)], "after the last one comes the first"
     assert said(addon).text.startswith("Stroke 2 may be another stroke on frame 3")
     bpy.ops.rototoon.next_doubt(layer="Lines", number=1)

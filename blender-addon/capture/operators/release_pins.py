@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, selection
 from ...common.operators import Guarded
 from ...common.wording import counted
 from .. import corrections
@@ -39,7 +39,7 @@ class ROTOTOON_OT_release_pins(Guarded, OnTracked, bpy.types.Operator):
             frames = list(drawings) if self.which == "ALL" else [f for f in drawings if f == current]
             for frame in frames:
                 drawing = drawings[frame][0]
-                mask = gp.selected_points(drawing) if self.which == "SELECTED" else None
+                mask = selection.selected_points(drawing) if self.which == "SELECTED" else None
                 released += corrections.release(drawing, mask)
         ob.data.update_tag()
         self.warn(guard.left_out(layers))

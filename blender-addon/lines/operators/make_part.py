@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, placement, stroke_lines
+from ...blender import guard, placement, selection, stroke_lines
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...capture import document, identity
@@ -79,7 +79,7 @@ def _strokes(ob, frame: int, wanted: set[int] | None) -> list[tuple[np.ndarray, 
             continue
         handle = gp.drawings(layer)[shown][0]
         content = st.read(handle)
-        chosen = gp.selected_strokes(handle) if wanted is None else np.isin(content.strokes(gp.TRACK), sorted(wanted))
+        chosen = selection.selected_strokes(handle) if wanted is None else np.isin(content.strokes(gp.TRACK), sorted(wanted))
         if not chosen.any():
             continue
         mapping = placement.Mapper(ob, [frame], {}, [layer.name]).at(0, frame)

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, marks, placement
+from ...blender import guard, marks, placement, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -67,7 +67,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         mapper = placement.Mapper(self._ob, frames, {0: points[np.isfinite(points).all(1)]}, [layer.name])
         chosen = None
         if self.selected:
-            chosen = gp.selected_strokes(gp.drawings(layer)[shown][0])
+            chosen = selection.selected_strokes(gp.drawings(layer)[shown][0])
         edit = spreading.found(contents[shown], record.numbers.get(shown, []), mapper.at(0, shown), chosen)
         if not self.delete:
             edit.deleted = set()

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, marks, projection
+from ...blender import guard, marks, projection, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -93,7 +93,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         if not self.selected or self._ob.mode != "EDIT" or not len(content.sizes):
             return np.ones(len(content.sizes), bool)
         starts = content.starts[:-1]
-        some = np.add.reduceat(np.append(gp.selected_points(handle), False).astype(int), starts)
+        some = np.add.reduceat(np.append(selection.selected_points(handle), False).astype(int), starts)
         return (some > 0) & (content.sizes > 0)
 
     def _scale(self, layer, content: st.Content) -> tuple[float, float]:
