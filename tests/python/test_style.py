@@ -179,8 +179,10 @@ def test_work_can_be_stopped(shelf):
 
 def test_what_is_wrong_is_named(shelf):
     clips = style.read_library(shelf).clips
-    with pytest.raises(RototoonError, match="found 3 clips of that character and motion among 3, expected one"):
+    with pytest.raises(RototoonError, match='any character, any motion: found 3 such clips, expected the names of one: "walk" by "plain", "wave" by "plain"'):
         style.reshape(figure(), clips)
+    with pytest.raises(RototoonError, match='character "plain", motion "wavy": found no such clip among 3, expected one; there are "wave" by "plain", '):
+        style.reshape(figure(), clips, character="plain", motion="wavy")
     with pytest.raises(RototoonError, match="limbs: found none"):
         style.capture_clip({**figure(), "limbs": []}, "anna", "walk")
     off = copy.deepcopy(figure())

@@ -7,7 +7,7 @@
 //! [`session_edit_abi`], [`session_track_abi`], [`traced_abi`], [`filled_abi`], [`strokes_abi`], [`tween_abi`],
 //! [`breakdown_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
 //! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`filled`], [`edit`], [`options`], [`matching`], [`strokes`],
-//! [`sheet`], [`style`], [`work`].
+//! [`sheet`], [`style`], [`choosing`], [`work`].
 //!
 //! # Contract
 //!
@@ -44,6 +44,7 @@ mod asked;
 pub mod breakdown;
 pub mod breakdown_abi;
 pub mod callback;
+mod choosing;
 pub mod edit;
 pub mod entry;
 pub mod filled;

@@ -1,6 +1,7 @@
 //! Skeleton clips, their library, and drawings that follow them, with JSON arguments and results. The functions of
 //! [`crate::style_abi`] document the JSON.
 
+use crate::choosing::chosen;
 use crate::status::Failure;
 use crate::work::{GoOn, run};
 use rototoon::geometry::Point;
@@ -225,7 +226,7 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
     let given: ReshapeOptions = options(json)?;
     let mut document = Document::parse(document, "document").map_err(Failure::error)?;
     let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
-    let clip = chosen(&clips, &given)?;
+    let clip = chosen(&clips.clips, given.character.as_deref(), given.motion.as_deref())?;
     let sub_keys = given.sub_keys.unwrap_or(puppet::Options::default().sub_keys);
     if sub_keys > MOST_SUB_KEYS {
         return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
@@ -278,23 +279,6 @@ impl ReshapeOptions {
             .iter()
             .map(|(part, points)| (part.clone(), points.iter().map(|p| Point::new(p[0], p[1])).collect()))
             .collect()
-    }
-}
-
-fn chosen<'a>(clips: &'a Clips, given: &ReshapeOptions) -> Result<&'a Clip, Failure> {
-    let fits = |wanted: &Option<String>, value: &str| wanted.as_deref().is_none_or(|wanted| wanted == value);
-    let found: Vec<&Clip> = clips
-        .clips
-        .iter()
-        .filter(|clip| fits(&given.character, &clip.character) && fits(&given.motion, &clip.motion))
-        .collect();
-    match found.as_slice() {
-        [only] => Ok(only),
-        other => Err(Failure::Error(format!(
-            "options: found {} clips of that character and motion among {}, expected one",
-            other.len(),
-            clips.clips.len()
-        ))),
     }
 }
 
