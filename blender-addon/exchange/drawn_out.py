@@ -38,8 +38,6 @@ class Written:
     between: int = 0
     lost: set[int] = field(default_factory=set)
     """Scene frames with a stroke that could not be written: one of its points has no place."""
-    both: set[int] = field(default_factory=set)
-    """Scene frames with a stroke that has a line and a fill."""
 
 
 def of(ob, pegs: set[str]) -> Written:
@@ -145,9 +143,8 @@ class _Layer:
             "matches": self._matches(),
         }
         lost = {frame for frame, sheet in self._sheets.items() if len(sheet.strokes) < len(sheet.content.sizes)}
-        both = {frame for frame, sheet in self._sheets.items() if any("fill_colour" in each for each in sheet.strokes.values())}
         drawn = self._drawn
-        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), lost, both)
+        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), lost)
 
     def _more(self, sheet: _Sheet, index: int, pegs: set[str]) -> dict[str, Any]:
         return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), pegs)

@@ -24,8 +24,10 @@ from . import looks, records, tracing
 
 Strokes = Mapping[int, list[tracing.Placed]]
 """By scene frame, from back to front."""
-Inks = Mapping[tuple[int, bool], np.ndarray]
-"""By number, and whether it is a shape: the colour of a material."""
+Ink = tuple[np.ndarray, np.ndarray | None]
+"""The colour of a material, and that of its fill if it has both."""
+Inks = Mapping[tuple[int, bool], Ink]
+"""By number, and whether it is a shape."""
 
 
 @dataclass
@@ -111,7 +113,7 @@ def _known(ob, drawn: Strokes) -> dict[tuple[int, bool], int]:
         # One material for a stroke on all frames. It is the first frame's.
         if stroke.number not in filled:
             filled.add(stroke.number)
-            found[stroke.number, stroke.fill] = _material(ob, stroke.colour, stroke)
+            found[stroke.number, stroke.fill] = _material(ob, stroke.colour, stroke.fill_colour, stroke.fill)
     return found
 
 
@@ -133,16 +135,16 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     numbers = np.array([stroke.number for stroke in strokes], np.int32)
     # Materials and fills go by numbers. Strokes without a number have colours of their own, so all get others meanwhile.
     own = [replace(stroke, number=i) for i, stroke in enumerate(strokes, 1)]
-    colours = [inks.get((stroke.number, stroke.fill), stroke.colour) for stroke in strokes]
+    shown = [_ink(stroke, inks) for stroke in strokes]
     places: dict[tuple, int] = {}
     materials = {}
-    for colour, each in zip(colours, own):
-        key = tuple(colour), each.fill, None if each.fill_colour is None else tuple(each.fill_colour)
+    for (colour, fill_colour), each in zip(shown, own):
+        key = tuple(colour), each.fill, None if fill_colour is None else tuple(fill_colour)
         if key not in places:
-            places[key] = _material(ob, colour, each)
+            places[key] = _material(ob, colour, fill_colour, each.fill)
         materials[each.number, each.fill] = places[key]
     rows = tracing.rows_of(frame, own, looks.Looks(), [], materials, mapper.at(0, frame))
-    _tint(rows, strokes, colours)
+    _tint(rows, strokes, shown)
     rows.values[gp.TRACK] = numbers
     rows.values[gp.LINE] = np.repeat(numbers, rows.sizes)
     if any(stroke.fields for stroke in strokes):
@@ -150,23 +152,30 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     return rows
 
 
-def _material(ob, colour: np.ndarray, stroke: tracing.Placed) -> int:
-    if stroke.fill_colour is not None:
-        return looks.filled_material(ob, colour, stroke.fill_colour)
-    return looks.exact_material(ob, colour, stroke.fill)
+def _ink(stroke: tracing.Placed, inks: Inks) -> Ink:
+    """The colours of a stroke's material."""
+    colour, fill_colour = inks.get((stroke.number, stroke.fill), (stroke.colour, None))
+    # A piece of a stroke with a fill may have none.
+    return colour, stroke.fill_colour if fill_colour is None or stroke.fill_colour is None else fill_colour
 
 
-def _tint(rows: gp.Rows, strokes: list[tracing.Placed], inks: list[np.ndarray]) -> None:
-    """Colours the strokes whose colour is not that of their material."""
-    tints = np.zeros((len(strokes), 4), np.float32)
-    for tint, stroke, ink in zip(tints, strokes, inks):
-        if np.abs(stroke.colour - ink).max() > looks.EXACT:
-            tint[:] = *line_materials.to_linear(stroke.colour), 1.0
-    fills = np.array([stroke.fill for stroke in strokes], bool)
-    if tints[~fills].any():
-        rows.values["vertex_color"] = np.repeat(np.where(fills[:, None], 0, tints), rows.sizes, axis=0)
-    if tints[fills].any():
-        rows.values["fill_color"] = np.where(fills[:, None], tints, 0)
+def _material(ob, colour: np.ndarray, fill_colour: np.ndarray | None, fill: bool) -> int:
+    if fill_colour is not None:
+        return looks.filled_material(ob, colour, fill_colour)
+    return looks.exact_material(ob, colour, fill)
+
+
+def _tint(rows: gp.Rows, strokes: list[tracing.Placed], shown: list[Ink]) -> None:
+    """Colours the lines and fills whose colour is not that of their material."""
+    lines, fills = (np.zeros((len(strokes), 4), np.float32) for _ in range(2))
+    for line, fill, stroke, (ink, fill_ink) in zip(lines, fills, strokes, shown):
+        for tint, wanted, given in ((fill if stroke.fill else line, stroke.colour, ink), (fill, stroke.fill_colour, fill_ink)):
+            if wanted is not None and np.abs(wanted - given).max() > looks.EXACT:
+                tint[:] = *line_materials.to_linear(wanted), 1.0
+    if lines.any():
+        rows.values["vertex_color"] = np.repeat(lines, rows.sizes, axis=0)
+    if fills.any():
+        rows.values["fill_color"] = fills
 
 
 def _pair(target, written, film: Film) -> None:
@@ -196,7 +205,7 @@ def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> N
         if inside:
             # On its way a stroke has the material of its keys: another one for each frame would be too many.
             ends = [stroke for key in (last, first) for stroke in film.keys[key]]
-            inks = {(stroke.number, stroke.fill): stroke.colour for stroke in ends if stroke.number}
+            inks = {(stroke.number, stroke.fill): (stroke.colour, stroke.fill_colour) for stroke in ends if stroke.number}
             gp.make_frames(target, inside, gp.KEYFRAME)
             gp.set_keyframe_type(target, dict.fromkeys(inside, gp.GENERATED))
             drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes, inks) for frame, strokes in inside.items()}

@@ -58,9 +58,6 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         self._warn_of_others(ob)
         if written.lost:
             self.warn(f"left out: strokes with a point without a place (not a number), on {listed(sorted(written.lost))}")
-        if written.both:
-            frames = listed(sorted(written.both))
-            self.warn(f"strokes with a line and a fill, on {frames}: Blender reads both, other programs and the command line only the line")
         found = [counted(written.keys, "drawing")] if written.keys else []
         found += [f"traced lines of {counted(written.traced, 'frame')}"] if written.traced else []
         return found + ([counted(written.between, "in-between")] if written.between else [])

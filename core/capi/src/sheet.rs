@@ -114,6 +114,7 @@ impl Drawings<'_> {
             closed: self.strokes.closed[i] != 0,
             colour: colour.map(|c| [c[0] as f32, c[1] as f32, c[2] as f32]),
             fill: false,
+            fill_colour: None,
             widths: Vec::new(),
             material: label(0),
             layer: label(1),

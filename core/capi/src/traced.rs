@@ -160,7 +160,7 @@ mod tests {
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
             confidence: Some(0.75),
-            fill: false,
+            ..TracedStroke::default()
         };
         let ring =
             TracedStroke { track: 1, points: vec![Point::ONE; 3], closed: true, fill: true, ..TracedStroke::default() };

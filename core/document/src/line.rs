@@ -4,6 +4,8 @@
 //! - `widths` has one width in pixels for each point, and may be missing.
 //! - `fill` says that what is inside a closed line is filled with its colour. A fill without `widths` has no line around it.
 //! - `colour` is sRGB-encoded, and may be missing.
+//! - `fill_colour` is the colour of the fill of a stroke that has a line too; `colour` is the line's then. An open stroke is
+//!   filled as if its ends were joined. It contradicts `fill`, whose colour is `colour`.
 
 use super::fields::{FieldError, array, colour, flag, given, number, point, wrong};
 use rototoon_base::geometry::Point;
@@ -21,6 +23,7 @@ pub(super) struct Line {
     /// One for each point, or none.
     pub widths: Vec<f64>,
     pub colour: Option<Colour>,
+    pub fill_colour: Option<Colour>,
 }
 
 /// Reads the fields of a line. `channel` reads a channel of its colour.
@@ -38,8 +41,13 @@ pub(super) fn read(
     if fill && !closed {
         return Err(wrong(&format!("{place}.fill"), "true on an open stroke", "a closed stroke"));
     }
-    let colour = given(fields, place, "colour", |value, place| colour(value, place, channel))?;
-    Ok(Line { points, closed, fill, widths, colour })
+    let shade = |name| given(fields, place, name, |value, place| colour(value, place, channel));
+    let (colour, fill_colour) = (shade("colour")?, shade("fill_colour")?);
+    if fill && fill_colour.is_some() {
+        let expected = "none beside fill: the colour of a filled shape without a line is its colour";
+        return Err(wrong(&format!("{place}.fill_colour"), "a colour", expected));
+    }
+    Ok(Line { points, closed, fill, widths, colour, fill_colour })
 }
 
 fn widths(value: Option<&Value>, place: &str, count: usize) -> Result<Vec<f64>, FieldError> {
@@ -67,7 +75,9 @@ pub(super) fn write(line: &Line, fields: &mut Map<String, Value>, written: impl 
     if !line.widths.is_empty() {
         fields.insert("widths".into(), json!(line.widths.iter().map(|&w| written(w)).collect::<Vec<_>>()));
     }
-    if let Some(colour) = line.colour {
-        fields.insert("colour".into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+    for (name, colour) in [("colour", line.colour), ("fill_colour", line.fill_colour)] {
+        if let Some(colour) = colour {
+            fields.insert(name.into(), json!(colour.map(|c| (f64::from(c) * 1e4).round() / 1e4)));
+        }
     }
 }

@@ -9,6 +9,7 @@
 //! - `widths` has one width in pixels for each point. `widths` and `colour` (sRGB, 0 to 1) are optional.
 //! - `fill` says that what is inside a closed stroke is filled with its colour. Without it the stroke is a line. A fill
 //!   without `widths` has no line around it.
+//! - `fill_colour` is the colour of the fill of a stroke that has a line too.
 //! - `confidence` is the probability, 0 to 1, that the stroke is the one of its number. Without it the stroke is beyond
 //!   doubt: it was drawn, or begins here.
 
@@ -35,6 +36,8 @@ pub struct TracedStroke {
     pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<Colour>,
+    /// Colour of the fill of a stroke that has a line too; `None` if it has none. Never with `fill`.
+    pub fill_colour: Option<Colour>,
     /// The probability that it is the stroke of its number; `None` if it is beyond doubt.
     pub confidence: Option<f64>,
     /// Whether what is inside is filled with the colour, such as a solid black. Only closed strokes are filled. Without
@@ -86,7 +89,7 @@ fn drawing(frame: FrameNumber, list: &[Value], place: &str) -> Result<TracedDraw
 
 fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
     let fields = object(value, place)?;
-    let Line { points, closed, fill, widths, colour } = line::read(fields, place, number)?;
+    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, number)?;
     Ok(TracedStroke {
         track: count(fields.get("track"), &format!("{place}.track"))?,
         points,
@@ -94,15 +97,16 @@ fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
         fill,
         widths,
         colour,
+        fill_colour,
         confidence: given(fields, place, "confidence", share)?,
     })
 }
 
 fn written(stroke: &TracedStroke) -> Value {
-    let TracedStroke { track, points, closed, widths, colour, confidence, fill } = stroke.clone();
+    let TracedStroke { track, points, closed, widths, colour, fill_colour, confidence, fill } = stroke.clone();
     let mut fields = Map::new();
     fields.insert("track".into(), json!(track));
-    line::write(&Line { points, closed, fill, widths, colour }, &mut fields, rounded);
+    line::write(&Line { points, closed, fill, widths, colour, fill_colour }, &mut fields, rounded);
     if let Some(confidence) = confidence {
         fields.insert("confidence".into(), json!((confidence * 1e3).round() / 1e3));
     }
@@ -129,11 +133,12 @@ mod tests {
             closed: false,
             widths: vec![2.0, 2.5],
             colour: Some([0.0, 0.5, 1.0]),
+            fill_colour: Some([1.0, 0.25, 0.0]),
             confidence: Some(0.75),
             fill: false,
         };
         let outline = TracedStroke { track: 0, points: vec![Point::ONE; 3], closed: true, ..stroke.clone() };
-        let outline = TracedStroke { widths: Vec::new(), colour: None, confidence: None, ..outline };
+        let outline = TracedStroke { widths: Vec::new(), colour: None, fill_colour: None, confidence: None, ..outline };
         let black = TracedStroke { track: 1, colour: Some([0.0; 3]), fill: true, ..outline.clone() };
         let drawings = [
             TracedDrawing { frame: -2, strokes: vec![black, stroke, outline] },

@@ -19,7 +19,7 @@ pub fn finished(walked: &Walked, picture: &Raster<Colour>, unit: f64, darkness: 
     let points = curve(&walked.points, walked.closed, unit);
     if walked.fill {
         let colour = colour(&inside(&points, picture), picture);
-        return Stroke { widths: Vec::new(), colour, points, closed: true, fill: true };
+        return Stroke { widths: Vec::new(), colour, points, closed: true, fill: true, fill_colour: None };
     }
     let widths = match darkness {
         Some((darkness, darkest)) => {
@@ -29,7 +29,8 @@ pub fn finished(walked: &Walked, picture: &Raster<Colour>, unit: f64, darkness: 
         }
         None => widths(walked, &walked.radii, &points),
     };
-    Stroke { widths, colour: colour(&walked.points, picture), points, closed: walked.closed, fill: false }
+    let (colour, closed) = (colour(&walked.points, picture), walked.closed);
+    Stroke { widths, colour, points, closed, fill: false, fill_colour: None }
 }
 
 /// The centres of the pixels within an outline, and its own points if it is too thin for any.

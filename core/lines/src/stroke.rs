@@ -17,6 +17,9 @@ pub struct Stroke {
     /// Whether it is the outline of a shape filled with the colour, such as a solid black. Then it is closed. A later fill
     /// within another one is a hole in it, with the colour of what shows there.
     pub fill: bool,
+    /// Colour of the fill of a stroke that has a line too, as a painter gave it; `None` if it has none. Pictures are not asked
+    /// for it: on other drawings the stroke has it too.
+    pub fill_colour: Option<Colour>,
 }
 
 /// What kind of drawing it is.

@@ -83,7 +83,9 @@ impl Cels {
     pub fn names(&self) -> BTreeSet<String> {
         let regions: BTreeSet<usize> = self.regions.values().flatten().map(|region| region.track).collect();
         let strokes: BTreeSet<strokes::Id> = self.strokes.values().flatten().map(|seen| seen.id).collect();
-        regions.into_iter().map(named).chain(strokes.iter().map(strokes::Id::to_string)).collect()
+        let filled = self.strokes.values().flatten().filter(|seen| seen.stroke.fill_colour.is_some());
+        let fills = filled.map(|seen| fill_of(seen.id));
+        regions.into_iter().map(named).chain(strokes.iter().map(strokes::Id::to_string)).chain(fills).collect()
     }
 
     /// The frames with painted regions, each with the least confidence of one.
@@ -92,12 +94,12 @@ impl Cels {
         self.regions.iter().map(move |(frame, regions)| (*frame, least(regions)))
     }
 
-    /// What is shown on a frame, from back to front: painted regions, solid shapes, lines. `scale` is the number of pixels of
+    /// What is shown on a frame, from back to front: painted regions, then strokes in their order, each fill behind its line. `scale` is the number of pixels of
     /// the picture for each pixel of the footage. The origin is that of the footage.
     pub fn on(&self, frame: FrameNumber, scale: f64) -> Vec<Region> {
         let regions = self.regions.get(&frame).into_iter().flatten().map(|own| region(own, scale));
         let strokes = self.strokes.get(&frame).into_iter().flatten();
-        regions.chain(strokes.map(|seen| stroke(seen, self.plain, scale))).collect()
+        regions.chain(strokes.flat_map(|seen| stroke(seen, self.plain, scale))).collect()
     }
 
     /// The drawing of a frame over what is shown there.
@@ -126,6 +128,11 @@ fn named(track: usize) -> String {
     format!("region {track}")
 }
 
+/// The name of the fill of a stroke that has a line too.
+fn fill_of(id: strokes::Id) -> String {
+    format!("{id} fill")
+}
+
 fn region(FilledRegion { outline, holes, colour, track, .. }: &FilledRegion, scale: f64) -> Region {
     Region {
         name: named(*track),
@@ -136,8 +143,23 @@ fn region(FilledRegion { outline, holes, colour, track, .. }: &FilledRegion, sca
     }
 }
 
-/// A stroke as a region. `plain` is the width of one without widths.
-fn stroke(seen: &Seen, plain: f64, scale: f64) -> Region {
+/// A stroke as a region, behind it another one if its fill has another colour. `plain` is the width of one without widths.
+fn stroke(seen: &Seen, plain: f64, scale: f64) -> impl Iterator<Item = Region> {
+    let line = line(seen, plain, scale);
+    let opacity = seen.opacity as f32;
+    let fill = seen.stroke.fill_colour.map(|colour| Region {
+        name: fill_of(seen.id),
+        areas: vec![scaled(&seen.stroke.points, scale)],
+        // Through a faint line what is behind the stroke shows, not its fill: line and fill fade as one.
+        holes: if opacity < 1.0 { line.areas.clone() } else { Vec::new() },
+        colour,
+        opacity,
+    });
+    fill.into_iter().chain([line])
+}
+
+/// The line of a stroke, or a solid shape with the line around it.
+fn line(seen: &Seen, plain: f64, scale: f64) -> Region {
     let own = &seen.stroke;
     let points = scaled(&own.points, scale);
     let plain = vec![plain; points.len()];

@@ -1,6 +1,10 @@
 //! The strokes that a document shows on each frame, for pictures and exports.
 //!
 //! A frame shows its traced strokes. Where it has none, it shows those of its in-between, and else those of its drawing.
+//!
+//! Fills are behind lines ([`behind`]). But where a stroke has a line and a fill of another colour, such as the outline of a
+//! painted shape, the frame's strokes keep their own order, from back to front: such a stroke hides what is drawn before it, and a
+//! fill that is drawn after it lies on it.
 
 use super::{PipelineError, fill};
 use crate::export::SvgStroke;
@@ -47,6 +51,8 @@ pub(super) struct Seen {
     pub stroke: TracedStroke,
     /// 0 to 1.
     pub opacity: f64,
+    /// Whether its colour was read from a picture. Then it is not quite the same on each frame, though nobody changed it.
+    pub traced: bool,
 }
 
 impl Seen {
@@ -66,10 +72,10 @@ pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<S
     let numbers = document.stroke_numbers().map_err(|error| fill::field(&error))?;
     let between = document.in_betweens().map_err(|error| fill::field(&error))?;
     let traced = document.traced().map_err(|error| fill::field(&error))?;
-    let drawn = |id: Id, opacity: f64, DrawnStroke { points, closed, fill, widths, colour, .. }: DrawnStroke| Seen {
-        id,
-        opacity,
-        stroke: TracedStroke { points, closed, fill, widths, colour, ..TracedStroke::default() },
+    let drawn = |id: Id, opacity: f64, own: DrawnStroke| {
+        let DrawnStroke { points, closed, fill, widths, colour, fill_colour, .. } = own;
+        let stroke = TracedStroke { points, closed, fill, widths, colour, fill_colour, ..TracedStroke::default() };
+        Seen { id, opacity, stroke, traced: false }
     };
     let mut found: BTreeMap<FrameNumber, Vec<Seen>> = BTreeMap::new();
     for own in drawings {
@@ -84,11 +90,12 @@ pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<S
         found.insert(own.frame, seen.collect());
     }
     for own in traced {
-        let seen = |stroke: TracedStroke| Seen { id: Id::Track(stroke.track), opacity: 1.0, stroke };
+        let seen = |stroke: TracedStroke| Seen { id: Id::Track(stroke.track), opacity: 1.0, stroke, traced: true };
         found.insert(own.frame, own.strokes.into_iter().map(seen).collect());
     }
     let key = |own: &Seen| (own.stroke.fill, area(&own.stroke.points));
-    found.values_mut().for_each(|own| own.sort_by(|a, b| behind(key(a), key(b))));
+    let sorted = |own: &&mut Vec<Seen>| own.iter().all(|seen| seen.stroke.fill_colour.is_none());
+    found.values_mut().filter(sorted).for_each(|own| own.sort_by(|a, b| behind(key(a), key(b))));
     Ok(found)
 }
 
@@ -111,9 +118,17 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
             width,
             widths: BTreeMap::new(),
             colour: own.stroke.colour.unwrap_or_default(),
+            colours: BTreeMap::new(),
+            fills: BTreeMap::new(),
             fill: own.stroke.fill,
             lined: own.is_lined(),
         });
+        if let Some(colour) = own.stroke.fill_colour {
+            known.fills.insert(frame, colour);
+        }
+        if let Some(colour) = own.stroke.colour.filter(|colour| !own.traced && *colour != known.colour) {
+            known.colours.insert(frame, colour);
+        }
         known.points.insert(frame, own.stroke.points);
         if (width - known.width).abs() > ROUNDING {
             known.widths.insert(frame, width);
@@ -123,6 +138,10 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
         }
     }
     let mut found: Vec<SvgStroke> = found.into_values().collect();
+    // Else the numbers follow the order of the first drawing.
+    if found.iter().any(|stroke| !stroke.fills.is_empty()) {
+        return Ok(found);
+    }
     let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
     found.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
     Ok(found)

@@ -344,6 +344,7 @@ fn of_drawn(drawn: &DrawnStroke) -> Stroke {
         closed: drawn.closed,
         widths: drawn.widths.clone(),
         fill: drawn.fill,
+        fill_colour: drawn.fill_colour,
         colour,
     }
 }
@@ -357,9 +358,13 @@ fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
         colour: Some(stroke.colour),
         confidence: (*confidence < 1.0).then_some(*confidence),
         fill: stroke.fill,
+        fill_colour: stroke.fill_colour,
     };
     let mut strokes: Vec<Tracked> = strokes.to_vec();
-    strokes.sort_by(|a, b| behind_first(&a.stroke, &b.stroke));
+    // A line with a fill of its own hides what is drawn before it, so such a drawing keeps its order.
+    if strokes.iter().all(|tracked| tracked.stroke.fill_colour.is_none()) {
+        strokes.sort_by(|a, b| behind_first(&a.stroke, &b.stroke));
+    }
     TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
 }
 

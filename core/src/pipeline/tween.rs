@@ -164,6 +164,7 @@ fn key(drawing: &Drawing, k: usize) -> Result<Key, PipelineError> {
         closed: s.closed,
         colour: s.colour,
         fill: s.fill,
+        fill_colour: s.fill_colour,
         widths: s.widths.clone(),
         material: s.material,
         layer: s.layer,
@@ -246,8 +247,9 @@ pub(super) fn peg_of(drawn: &DrawnPeg, k: usize) -> Result<Peg, (String, String)
 }
 
 fn stroke_of(drawn: InBetween) -> (usize, f64, DrawnStroke) {
-    let Stroke { points, closed, colour, fill, widths, material, layer, peg: _ } = drawn.stroke;
-    (drawn.track, drawn.opacity, DrawnStroke { points, closed, fill, widths, colour, material, layer, peg: None })
+    let Stroke { points, closed, colour, fill, fill_colour, widths, material, layer, peg: _ } = drawn.stroke;
+    let stroke = DrawnStroke { points, closed, fill, widths, colour, fill_colour, material, layer, peg: None };
+    (drawn.track, drawn.opacity, stroke)
 }
 
 /// What the document says of a span: its frames, whether it is held, how strokes match, and the numbers of both drawings'

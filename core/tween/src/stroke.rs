@@ -17,6 +17,8 @@ pub struct Stroke {
     pub material: Option<u32>,
     /// Whether it is the outline of a solid shape, which is filled with the colour. Matching does not look at it.
     pub fill: bool,
+    /// Colour of the fill of a stroke that has a line too, as `colour`. Matching does not look at it.
+    pub fill_colour: Option<[f32; 3]>,
     /// Number of the layer. Matching adds a cost where both strokes have a layer and the layers differ.
     pub layer: Option<u32>,
     /// Number of the peg on which it is hung. Matching pairs no strokes of different pegs.

@@ -131,6 +131,74 @@ fn a_solid_shape_is_solid_between_its_keys() {
     assert_eq!([lines.get_pixel(17, 13).0, lines.get_pixel(8, 13).0], [[255, 0, 0, 255], [0; 4]]);
 }
 
+/// A square with a red line, 2 px wide, and a fill.
+fn painted_square(x: f64, fill: [f64; 3]) -> Value {
+    let points = json!([[x, 5], [x + 20.0, 5], [x + 20.0, 25], [x, 25]]);
+    json!({"points": points, "closed": true, "widths": [2, 2, 2, 2], "colour": [1, 0, 0], "fill_colour": fill})
+}
+
+#[test]
+fn a_fill_lies_under_its_line_and_changes_its_colour_between_its_keys() {
+    let line = |x: f64| json!({"points": [[x - 4.0, 21], [x + 24.0, 21]], "closed": false, "widths": [2, 2], "colour": [0, 0, 0]});
+    let spot = |x: f64| {
+        let points = json!([[x + 8.0, 8], [x + 12.0, 8], [x + 12.0, 12], [x + 8.0, 12]]);
+        json!({"points": points, "closed": true, "fill": true, "colour": [1, 1, 0]})
+    };
+    let drawing =
+        |frame: i32, x: f64, fill| json!({"frame": frame, "strokes": [line(x), painted_square(x, fill), spot(x)]});
+    let drawings = [drawing(-1, 4.0, [0.0, 1.0, 0.0]), drawing(1, 16.0, [0.0, 0.0, 1.0])];
+    let (folder, path) = project(json!({"drawings": drawings}));
+    let tweened = folder.path().join("tweened.json");
+    let run = |words: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(words).output().unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+    };
+    run(&["tween", path.to_str().unwrap(), "-o", tweened.to_str().unwrap()]);
+    let document: Value = serde_json::from_str(&fs::read_to_string(&tweened).unwrap()).unwrap();
+    assert_eq!(document["in_betweens"][0]["strokes"][1]["fill_colour"], json!([0.0, 0.5, 0.5]));
+    let lines = picture(&tweened, "lines", &[]);
+    // The square is at 10 px. It hides the black line, which is drawn before it; the yellow spot is drawn after it.
+    let (red, mixed, yellow, black) = ([255, 0, 0, 255], [0, 128, 128, 255], [255, 255, 0, 255], [0, 0, 0, 255]);
+    for ((x, y), expected) in [
+        ((9, 15), red),
+        ((10, 15), red),
+        ((15, 18), mixed),
+        ((15, 21), mixed),
+        ((20, 10), yellow),
+        ((7, 21), black),
+        ((7, 15), [0; 4]),
+    ] {
+        assert_eq!(lines.get_pixel(x, y).0, expected, "{x} {y}");
+    }
+    let to = folder.path().join("lines.exr");
+    assert!(render(&tweened, &to, &["--what", "lines", "--frames", "0"]).status.success());
+    let bytes = fs::read(to).unwrap();
+    let header = String::from_utf8_lossy(&bytes);
+    assert!(["\"stroke 1\":", "\"stroke 1 fill\":", "\"stroke 2\":"].iter().all(|name| header.contains(name)));
+    let to = folder.path().join("lines.svg");
+    run(&["export", tweened.to_str().unwrap(), "-o", to.to_str().unwrap()]);
+    let text = fs::read_to_string(to).unwrap();
+    let order = [
+        "id=\"stroke-0\"",
+        "id=\"stroke-1\" fill=\"#008080\" stroke=\"#ff0000\" stroke-width=\"2\"",
+        "id=\"stroke-2\"",
+    ];
+    let places = order.map(|part| text.find(part).unwrap_or_else(|| panic!("{part}: {text}")));
+    assert!(places.is_sorted() && text.contains("values=\"#008080;#0000ff\""), "{text}");
+}
+
+#[test]
+fn a_line_and_its_fill_fade_as_one() {
+    let mut stroke = painted_square(10.0, [0.0, 1.0, 0.0]);
+    stroke.as_object_mut().unwrap().extend([("track".into(), json!(0)), ("opacity".into(), json!(0.5))]);
+    let (_folder, path) = project(json!({"in_betweens": [{"frame": 0, "strokes": [stroke]}]}));
+    let lines = picture(&path, "lines", &[]);
+    for ((x, y), expected) in [((10, 15), [255, 0, 0, 128]), ((15, 15), [0, 255, 0, 128]), ((9, 15), [255, 0, 0, 128])]
+    {
+        assert_eq!(lines.get_pixel(x, y).0, expected, "{x} {y}");
+    }
+}
+
 #[test]
 fn in_betweens_and_drawings_are_drawn_and_exported() {
     let line = |x: f64| json!([{"points": [[x, 5], [x, 25]], "closed": false, "colour": [0, 0, 1]}]);

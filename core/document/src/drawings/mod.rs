@@ -12,7 +12,8 @@
 //!
 //! - `drawings`: frames ascend; strokes are listed from back to front. `widths` (pixels, one for each point), `colour` (sRGB, 0 to
 //!   1), `material`, `layer` and `peg` are optional. So is `fill`: the closed stroke is the outline of a shape filled with its
-//!   colour. Without `widths` it has no line around it. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
+//!   colour. Without `widths` it has no line around it. So is `fill_colour`, the colour of the fill of a stroke that has a line
+//!   too. `corner` is optional too: it marks a corner in time, where velocities need not join. `spacing`
 //!   determines the movement to the next drawing: `"smooth"` (the default), a movement function, or a spacing chart,
 //!   which is a list with the share of the way for each frame between.
 //! - A movement function is `"constant"` (a hold), `"linear"`, `"ease_in"`, `"ease_out"`, `"ease_in_out"`, `"cosine"`,
@@ -29,7 +30,7 @@
 //!   "confidence": 0.97, "by_hand": true}, "…"], "split": [{"whole": 1, "pieces": [[2, false], [7, true]]}], "joined": [],
 //!   "vanished": [4], "appeared": [], "tracks": [[0, 1, "…"], [1, 0, "…"]]}, "…"],
 //! "in_betweens": [{"frame": 1, "strokes": [{"track": 0, "points": [[x, y], "…"], "closed": true, "opacity": 1,
-//!   "widths": "…", "colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
+//!   "widths": "…", "colour": "…", "fill_colour": "…", "material": "…", "layer": "…"}, "…"]}, "…"]
 //! ```
 //!
 //! - `start`: for closed strokes, the position of the first point on the counterpart, as a share of the counterpart's
@@ -84,6 +85,8 @@ pub struct DrawnStroke {
     pub widths: Vec<f64>,
     /// Colour, sRGB-encoded, 0 to 1.
     pub colour: Option<[f32; 3]>,
+    /// Colour of the fill of a stroke that has a line too; `None` if it has none. Never with `fill`.
+    pub fill_colour: Option<[f32; 3]>,
     /// Number of the stroke's material.
     pub material: Option<u32>,
     /// Number of the stroke's layer.
@@ -240,9 +243,9 @@ pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
 }
 
 fn stroke_fields(stroke: &DrawnStroke, written: impl Fn(f64) -> f64) -> Map<String, Value> {
-    let DrawnStroke { points, closed, fill, widths, colour, .. } = stroke.clone();
+    let DrawnStroke { points, closed, fill, widths, colour, fill_colour, .. } = stroke.clone();
     let mut fields = Map::new();
-    line::write(&Line { points, closed, fill, widths, colour }, &mut fields, written);
+    line::write(&Line { points, closed, fill, widths, colour, fill_colour }, &mut fields, written);
     for (name, number) in [("material", stroke.material), ("layer", stroke.layer)] {
         if let Some(number) = number {
             fields.insert(name.into(), json!(number));
@@ -290,6 +293,25 @@ mod tests {
             document(r#""pegs": [{"name": "a", "parent": null, "pivot": [0, 0], "keys": []}]"#).drawings().unwrap();
         assert_eq!(root.pegs[0].parent, None);
         assert_eq!(document(r#""x": 1"#).drawings(), Ok(Drawings::default()));
+    }
+
+    #[test]
+    fn a_line_and_its_fill_are_read_and_written() {
+        let text = |more: &str| {
+            let colours = r#""colour": [0, 0, 0], "fill_colour": [0.25, 0.5, 1]"#;
+            format!(
+                r#""drawings": [{{"frame": 0, "strokes": [{{"points": [[0, 0]], "closed": true{more}, {colours}}}]}}]"#
+            )
+        };
+        let read = document(&text("")).drawings().unwrap();
+        let stroke = &read.drawings[0].strokes[0];
+        assert_eq!((stroke.colour, stroke.fill_colour, stroke.fill), (Some([0.0; 3]), Some([0.25, 0.5, 1.0]), false));
+        assert_eq!(stroke_fields(stroke, |value| value)["fill_colour"], json!([0.25, 0.5, 1.0]));
+        let error = document(&text(r#", "fill": true"#)).drawings().unwrap_err().to_string();
+        let expected = "drawings[0] (frame 0).strokes[0].fill_colour: found a colour, expected none beside fill: ";
+        assert!(error.starts_with(expected), "{error}");
+        let error = document(&text("").replace("0.25", "2")).drawings().unwrap_err().to_string();
+        assert!(error.starts_with("drawings[0] (frame 0).strokes[0].fill_colour[0]: found 2"), "{error}");
     }
 
     #[test]

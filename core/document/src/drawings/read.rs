@@ -173,7 +173,7 @@ impl Reader {
 
 pub(super) fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -> Result<DrawnStroke, DrawingsError> {
     let fields = object(value, place)?;
-    let Line { points, closed, fill, widths, colour } = line::read(fields, place, share)?;
+    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, share)?;
     let peg = |value: Option<&Value>, place: &str| named(value, place, pegs);
     Ok(DrawnStroke {
         points,
@@ -181,6 +181,7 @@ pub(super) fn stroke(value: &Value, place: &str, pegs: &BTreeMap<&str, usize>) -
         fill,
         widths,
         colour,
+        fill_colour,
         material: given(fields, place, "material", count)?,
         layer: given(fields, place, "layer", count)?,
         peg: given(fields, place, "peg", peg)?,

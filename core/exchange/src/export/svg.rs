@@ -76,6 +76,10 @@ pub struct SvgStroke {
     pub widths: BTreeMap<FrameNumber, f64>,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
+    /// Its colour on frames on which it is another one.
+    pub colours: BTreeMap<FrameNumber, Colour>,
+    /// The colour of the fill of a stroke that has a line too, on each frame on which it has one.
+    pub fills: BTreeMap<FrameNumber, Colour>,
     /// Whether what is inside is filled with the colour.
     pub fill: bool,
     /// Whether there is a line along it.
@@ -155,28 +159,59 @@ fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOpti
         Some(data(&even, stroke.closed))
     };
     let (id, colour, width) = (stroke.name.replace(' ', "-"), palette::hex(stroke.colour), decimal(stroke.width, 2));
-    let fill = if stroke.fill { colour.as_str() } else { "none" };
+    let start = (scene.footage.first..=scene.footage.last).find(|frame| stroke.points.contains_key(frame));
+    let fill = if stroke.fill { colour.clone() } else { start.map_or("none".into(), |frame| fill_on(stroke, frame)) };
     let line = match stroke.lined {
         true => format!("stroke=\"{colour}\" stroke-width=\"{width}\""),
         false => "stroke=\"none\"".into(),
     };
     let style = format!("id=\"{id}\" fill=\"{fill}\" {line}");
-    let widths = if stroke.lined { widths(scene, stroke, options.motion) } else { String::new() };
-    path(out, scene, &style, (&stroke.name, &stroke.opacities, &widths), options.motion, shape);
+    let looks = looks(scene, stroke, options.motion);
+    path(out, scene, &style, (&stroke.name, &stroke.opacities, &looks), options.motion, shape);
 }
 
-/// The animation of a stroke's width; none if it is always the same. Where the stroke is not, its width is the one before, or the first.
-fn widths(scene: &Scene, stroke: &SvgStroke, motion: Motion) -> String {
-    if stroke.widths.is_empty() {
-        return String::new();
-    }
-    let on = |frame| stroke.points.contains_key(&frame).then(|| *stroke.widths.get(&frame).unwrap_or(&stroke.width));
-    let frames = scene.footage.first..=scene.footage.last;
-    let all: Vec<Option<String>> = frames.map(|frame| Some(decimal(on(frame)?, 2).to_string())).collect();
-    let Some(first) = all.iter().flatten().next() else { return String::new() };
+/// The animations of a stroke's width and colours; none of what is always the same.
+fn looks(scene: &Scene, stroke: &SvgStroke, motion: Motion) -> String {
     let mut out = String::new();
-    let seconds = all.len() as f64 / scene.footage.fps;
-    animate(&mut out, "stroke-width", seconds, motion, &nearest(&all, first));
+    let mut changing = |attribute: &str, value: &dyn Fn(FrameNumber) -> String| {
+        out += &changes(scene, stroke, motion, attribute, value);
+    };
+    let colour = |frame| palette::hex(*stroke.colours.get(&frame).unwrap_or(&stroke.colour));
+    if stroke.lined {
+        changing("stroke-width", &|frame| decimal(*stroke.widths.get(&frame).unwrap_or(&stroke.width), 2).to_string());
+        changing("stroke", &colour);
+    }
+    if stroke.fill {
+        changing("fill", &colour);
+    } else {
+        changing("fill", &|frame| fill_on(stroke, frame));
+    }
+    out
+}
+
+/// The fill under the line of a stroke.
+fn fill_on(stroke: &SvgStroke, frame: FrameNumber) -> String {
+    stroke.fills.get(&frame).map_or("none".into(), |colour| palette::hex(*colour))
+}
+
+/// The animation of an attribute of a stroke; none if it is always the same. Where the stroke is not, it is the one before, or the
+/// first.
+fn changes(
+    scene: &Scene,
+    stroke: &SvgStroke,
+    motion: Motion,
+    attribute: &str,
+    value: &dyn Fn(FrameNumber) -> String,
+) -> String {
+    let on = |frame| stroke.points.contains_key(&frame).then(|| value(frame));
+    let all: Vec<Option<String>> = (scene.footage.first..=scene.footage.last).map(on).collect();
+    let mut out = String::new();
+    if let Some(first) = all.iter().flatten().next()
+        && all.iter().flatten().any(|value| value != first)
+    {
+        let seconds = all.len() as f64 / scene.footage.fps;
+        animate(&mut out, attribute, seconds, motion, &nearest(&all, first));
+    }
     out
 }
 
@@ -361,6 +396,23 @@ mod tests {
         let wide = svg_with_drawn(&bare, &[], &[wide], &SvgOptions::default());
         assert!(wide.contains("attributeName=\"stroke-width\"") && wide.contains("values=\"2.5;4\""), "{wide}");
         assert!(!text.contains("attributeName=\"stroke-width\""));
+        let (blue, green) = ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
+        let fills = BTreeMap::from([(1, blue), (2, blue)]);
+        let both = SvgStroke { closed: true, fills, ..stroke.clone() };
+        let plain = svg_with_drawn(&bare, &[], std::slice::from_ref(&both), &SvgOptions::default());
+        assert!(plain.contains("id=\"stroke-7\" fill=\"#0000ff\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{plain}");
+        assert!(!plain.contains("attributeName=\"fill\"") && !plain.contains("attributeName=\"stroke\""));
+        let (colours, fills) = (BTreeMap::from([(2, blue)]), BTreeMap::from([(1, blue), (2, green)]));
+        let changing =
+            svg_with_drawn(&bare, &[], &[SvgStroke { colours, fills, ..both.clone() }], &SvgOptions::default());
+        let animated = |attribute: &str| {
+            let rest = changing.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
+            self::attribute(rest, "values")[0].to_owned()
+        };
+        assert_eq!([animated("stroke"), animated("fill")], ["#ff0000;#0000ff", "#0000ff;#00ff00"]);
+        let late = SvgStroke { fills: BTreeMap::from([(2, green)]), ..both };
+        let late = svg_with_drawn(&bare, &[], &[late], &SvgOptions::default());
+        assert!(late.contains("fill=\"none\"") && late.contains("values=\"none;#00ff00\""), "{late}");
         assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame");
         let values = attribute(&text, "values");
         assert_eq!(values[1], "hidden;visible;hidden");

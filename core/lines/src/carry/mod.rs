@@ -218,5 +218,7 @@ fn finished(before: &Tracked, points: &[Point], closed: bool, to: &Drawing) -> T
     let radius = 0.5 * if widths.is_empty() { to.width } else { widths.iter().sum::<f64>() / widths.len() as f64 };
     let fill = before.stroke.fill && closed;
     let walked = Walked { points: points.to_vec(), radii: vec![radius; points.len()], closed, free: [true; 2], fill };
-    Tracked::sure(before.track, to.finished(&walked))
+    // A piece of a closed line does not enclose what the line does.
+    let fill_colour = before.stroke.fill_colour.filter(|_| closed == before.stroke.closed);
+    Tracked::sure(before.track, Stroke { fill_colour, ..to.finished(&walked) })
 }

@@ -147,12 +147,13 @@ impl Key {
     }
 
     fn stroke(&mut self, stroke: &Stroke) -> &mut Self {
-        let Stroke { points, closed, widths, colour, fill } = stroke;
+        let Stroke { points, closed, widths, colour, fill, fill_colour } = stroke;
         self.count(points.len()).count(widths.len()).count(usize::from(*closed)).count(usize::from(*fill));
         points.iter().flat_map(|p| [p.x, p.y]).chain(widths.iter().copied()).for_each(|value| {
             self.number(value);
         });
-        colour.iter().for_each(|&value| {
+        self.count(usize::from(fill_colour.is_some()));
+        colour.iter().chain(fill_colour.iter().flatten()).for_each(|&value| {
             self.number(f64::from(value));
         });
         self
@@ -228,6 +229,9 @@ mod tests {
             }),
             key(&|key| {
                 key.strokes(&[Stroke { fill: true, ..stroke.clone() }]);
+            }),
+            key(&|key| {
+                key.strokes(&[Stroke { fill_colour: Some([0.0; 3]), ..stroke.clone() }]);
             }),
             key(&|key| {
                 key.tracked(&[Tracked::sure(1, stroke.clone())]);

@@ -82,6 +82,7 @@ fn of_traced(traced: &TracedStroke) -> Tracked {
         closed: traced.closed,
         widths: traced.widths.clone(),
         fill: traced.fill,
+        fill_colour: traced.fill_colour,
         colour: traced.colour.unwrap_or_default(),
     };
     Tracked { track: traced.track, stroke, confidence: traced.confidence.unwrap_or(1.0) }

@@ -51,6 +51,6 @@ pub fn trace_drawings(
     Ok(drawings.iter().filter(|drawing| drawing.strokes.is_empty()).map(|drawing| drawing.frame).collect())
 }
 
-fn drawn(Stroke { points, closed, widths, colour, fill }: Stroke) -> DrawnStroke {
-    DrawnStroke { points, closed, fill, widths, colour: Some(colour), ..DrawnStroke::default() }
+fn drawn(Stroke { points, closed, widths, colour, fill, fill_colour }: Stroke) -> DrawnStroke {
+    DrawnStroke { points, closed, fill, widths, colour: Some(colour), fill_colour, ..DrawnStroke::default() }
 }

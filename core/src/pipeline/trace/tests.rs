@@ -88,6 +88,20 @@ fn a_second_run_takes_every_span_from_memory() {
 }
 
 #[test]
+fn a_fill_under_a_line_goes_with_its_stroke() {
+    let mut drawing = drawn(3, 0.0);
+    drawing.strokes[1].fill_colour = Some([0.25, 0.5, 1.0]);
+    let mut memory = TraceMemory::default();
+    let plain = traced(&[drawn(3, 0.0)], Some(&mut memory));
+    let found = traced(std::slice::from_ref(&drawing), Some(&mut memory));
+    assert_eq!(found, traced(&[drawing], None), "what was traced without the fill is not taken for it");
+    assert_eq!(tracks(&found), tracks(&plain));
+    for stroke in found.iter().flat_map(|drawing| &drawing.strokes) {
+        assert_eq!(stroke.fill_colour, (stroke.track == 1).then_some([0.25, 0.5, 1.0]));
+    }
+}
+
+#[test]
 fn stages_give_what_one_run_gives() {
     let whole = traced(&[], None);
     assert!(whole[2].strokes.len() == 3, "a stroke begins in the first stage");

@@ -1,8 +1,8 @@
 //! How a stroke looks between two keys, apart from its points: its widths, colour, material and layer.
 //!
-//! Colour and widths are blended by the spacing of the span, as Blender's add-on blends all that it keeps for a stroke. A
+//! Colours and widths are blended by the spacing of the span, as Blender's add-on blends all that it keeps for a stroke. A
 //! material or a layer cannot be blended: it is that of the earlier key. If only one key has widths, or a colour, the stroke has
-//! that one's.
+//! that one's. Pieces of a stroke are not filled: they enclose nothing, or not what the stroke encloses.
 //!
 //! A width belongs to a place of the line. So each key's widths are taken where the track's places are on that key's stroke
 //! ([`Places::blends`](super::Places::blends)), also where the counterpart has other points or runs the other way.
@@ -16,7 +16,10 @@ impl Sequence {
         let on = |key: usize| self.tracks[t].at(key).map(|stand| (stand, &self.keys[key].strokes[stand.stroke]));
         let (before, after) = (on(k), on(k + 1));
         let share = self.keys[k].spacing.at(u).clamp(0.0, 1.0);
-        let colour = match (before.and_then(|(_, s)| s.colour), after.and_then(|(_, s)| s.colour)) {
+        let mixed = |colour: &dyn Fn(&(&Stand, &Stroke)) -> Option<[f32; 3]>| match (
+            before.as_ref().and_then(colour),
+            after.as_ref().and_then(colour),
+        ) {
             (Some(a), Some(b)) => Some([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * share as f32)),
             (a, b) => a.or(b),
         };
@@ -25,7 +28,8 @@ impl Sequence {
             points: Vec::new(),
             closed: self.tracks[t].closed,
             widths: blended(before.and_then(widths), after.and_then(widths), share),
-            colour,
+            colour: mixed(&|(_, stroke)| stroke.colour),
+            fill_colour: mixed(&|(stand, stroke)| stroke.fill_colour.filter(|_| !stand.part)),
             // Pieces of an outline are open, and enclose nothing.
             fill: self.tracks[t].closed && own.is_some_and(|s| s.fill),
             material: own.and_then(|s| s.material),
@@ -55,7 +59,7 @@ fn blended(before: Option<Vec<f64>>, after: Option<Vec<f64>>, share: f64) -> Vec
 #[cfg(test)]
 mod tests {
     use crate::between::{GivenPegs, Key, Options, Sequence, Spacing};
-    use crate::matching::{Matching, Pair};
+    use crate::matching::{InPieces, Matching, Pair};
     use crate::peg::Timing;
     use crate::stroke::Stroke;
     use rototoon_base::geometry::Point;
@@ -91,6 +95,25 @@ mod tests {
         assert_eq!(eased.widths, [2.75, 3.25, 3.25], "a quarter of the way");
         let held = half_way(first(), second(), Timing::Constant);
         assert_eq!((held.widths, held.colour), (vec![1.0, 2.0, 3.0], Some([0.0; 3])));
+    }
+
+    #[test]
+    fn colours_of_fills_change_with_the_spacing_and_pieces_are_not_filled() {
+        let filled = |xs: &[f64], grey: f32| Stroke { fill_colour: Some([1.0, grey, 0.0]), ..stroke(xs, &[], 0.0) };
+        let fill = |timing: Timing| half_way(filled(&[0.0, 40.0], 0.0), filled(&[40.0, 0.0], 1.0), timing).fill_colour;
+        assert_eq!(fill(Timing::Linear), Some([1.0, 0.5, 0.0]));
+        assert_eq!(fill(Timing::EaseIn), Some([1.0, 0.25, 0.0]), "a quarter of the way");
+        let gone = half_way(filled(&[0.0, 40.0], 0.75), stroke(&[40.0, 0.0], &[], 0.0), Timing::Linear);
+        assert_eq!(gone.fill_colour, Some([1.0, 0.75, 0.0]), "only one key has a fill");
+        // A stroke that falls into two pieces.
+        let key = |frame, strokes| Key { frame, strokes, spacing: Spacing::default(), corner: false };
+        let split = InPieces { whole: 0, pieces: vec![(0, false), (1, false)] };
+        let halves = vec![stroke(&[0.0, 20.0], &[], 0.0), stroke(&[20.0, 40.0], &[], 0.0)];
+        let keys = vec![key(0, vec![filled(&[0.0, 40.0], 0.0)]), key(2, halves)];
+        let matching = Matching { split: vec![split], ..Matching::default() };
+        let sequence = Sequence::new(keys, &[matching], &GivenPegs::default(), &Options::default()).unwrap();
+        let drawn = sequence.at(1);
+        assert_eq!(drawn.iter().map(|piece| piece.stroke.fill_colour).collect::<Vec<_>>(), [None, None]);
     }
 
     #[test]
