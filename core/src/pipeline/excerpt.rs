@@ -48,7 +48,7 @@ pub fn excerpt(document: &Document, asked: &Excerpt) -> Result<Document, Pipelin
     }
     document.scene.footage = shifted(&document.scene.footage, asked.offset)?;
     if asked.offset != 0 {
-        document.scene.parts.iter_mut().for_each(|part| shift(part, asked.offset));
+        document.scene.parts.iter_mut().for_each(|part| part.shift(asked.offset));
     }
     Ok(document)
 }
@@ -94,21 +94,6 @@ fn between(keys: &BTreeMap<FrameNumber, Vec<Point>>, frame: FrameNumber) -> Opti
     let ((from, a), (to, b)) = (keys.range(..frame).next_back()?, keys.range(frame..).next()?);
     let share = (f64::from(frame) - f64::from(*from)) / (f64::from(*to) - f64::from(*from));
     (*to > frame && a.len() == b.len()).then(|| a.iter().zip(b).map(|(a, b)| a.lerp(*b, share)).collect())
-}
-
-/// Gives the contours of a part other frames.
-pub(super) fn shift(part: &mut Part, offset: FrameNumber) {
-    fn moved<T>(map: &mut BTreeMap<FrameNumber, T>, offset: FrameNumber) {
-        *map = std::mem::take(map).into_iter().map(|(frame, value)| (frame.saturating_add(offset), value)).collect();
-    }
-    moved(&mut part.keys, offset);
-    moved(&mut part.pins, offset);
-    moved(&mut part.centers, offset);
-    moved(&mut part.tracks, offset);
-    moved(&mut part.confidence, offset);
-    moved(&mut part.curves, offset);
-    moved(&mut part.depths, offset);
-    part.absent.iter_mut().flatten().chain(&mut part.wants_key).for_each(|frame| *frame = frame.saturating_add(offset));
 }
 
 #[cfg(test)]

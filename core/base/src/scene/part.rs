@@ -198,6 +198,24 @@ impl Part {
         }
     }
 
+    /// Adds a number to the frames of everything that the part has. What would be beyond the numbers of frames is left out; times of
+    /// absence end there.
+    pub fn shift(&mut self, by: FrameNumber) {
+        fn moved<T>(map: &mut BTreeMap<FrameNumber, T>, by: FrameNumber) {
+            let old = std::mem::take(map).into_iter();
+            *map = old.filter_map(|(frame, value)| Some((frame.checked_add(by)?, value))).collect();
+        }
+        moved(&mut self.keys, by);
+        moved(&mut self.pins, by);
+        moved(&mut self.centers, by);
+        moved(&mut self.tracks, by);
+        moved(&mut self.confidence, by);
+        moved(&mut self.curves, by);
+        moved(&mut self.depths, by);
+        self.wants_key = self.wants_key.iter().filter_map(|frame| frame.checked_add(by)).collect();
+        self.absent.iter_mut().flatten().for_each(|frame| *frame = frame.saturating_add(by));
+    }
+
     /// Depth on a frame.
     pub fn depth_at(&self, frame: FrameNumber) -> f64 {
         self.depths.get(&frame).copied().unwrap_or(self.depth)
@@ -241,6 +259,39 @@ mod tests {
         assert!(said.contains("the document has 31 parts, of which the nearest names are \"left arm\", "), "{said}");
         assert_eq!(said.matches('"').count(), 2 + 2 * NEAREST);
         assert_eq!(told(Vec::new(), "arm"), "no part \"arm\"; the document has no parts");
+    }
+
+    #[test]
+    fn everything_of_a_part_is_shifted_and_back() {
+        let at = |x: f64| vec![Point::new(x, 0.0)];
+        let part = Part {
+            keys: BTreeMap::from([(0, at(0.0)), (4, at(4.0))]),
+            pins: BTreeMap::from([(2, BTreeMap::from([(0, Point::ONE)]))]),
+            centers: BTreeMap::from([(3, Point::ONE)]),
+            tracks: BTreeMap::from([(0, at(0.0)), (1, at(1.0))]),
+            confidence: BTreeMap::from([(1, vec![0.5])]),
+            curves: BTreeMap::from([(1, vec![at(1.0)])]),
+            wants_key: vec![5],
+            depths: BTreeMap::from([(1, 2.0)]),
+            absent: vec![[2, 3]],
+            ..Part::default()
+        };
+        let mut there = part.clone();
+        there.shift(100);
+        assert!(there.keys.keys().eq(&[100, 104]) && there.tracks.keys().eq(&[100, 101]));
+        assert!(there.pins.contains_key(&102) && there.centers.contains_key(&103));
+        assert!([there.confidence.len(), there.curves.len(), there.depths.len()] == [1; 3]);
+        assert!(
+            there.confidence.contains_key(&101) && there.curves.contains_key(&101) && there.depths.contains_key(&101)
+        );
+        assert_eq!((&there.wants_key[..], &there.absent[..]), (&[105][..], &[[102, 103]][..]));
+        there.shift(-100);
+        assert_eq!(there, part);
+        there.shift(FrameNumber::MAX - 2);
+        assert!(
+            there.keys.keys().eq(&[FrameNumber::MAX - 2]) && there.centers.is_empty() && there.wants_key.is_empty()
+        );
+        assert_eq!(there.absent, [[FrameNumber::MAX; 2]]);
     }
 
     #[test]
