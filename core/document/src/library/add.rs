@@ -73,7 +73,8 @@ impl Library {
         once(clips().map(|(clip, _)| clip))?;
         let replaced: Vec<Entry> = clips().filter_map(|(clip, _)| self.existing(clip)).cloned().collect();
         if let (Existing::Refuse, Some(first)) = (existing, replaced.first()) {
-            return Err(AddError::Taken(Taken { folder, first: first.clone(), more: replaced.len() - 1 }));
+            let taken = Taken { folder, first: first.clone(), more: replaced.len() - 1 };
+            return Err(AddError::Taken(Box::new(taken)));
         }
         for (clip, one) in clips() {
             self.put(clip, one.clips.fps, one.source)?;

@@ -117,7 +117,7 @@ impl fmt::Display for Taken {
 pub enum AddError {
     /// Clips of the same character and motion are there, and must not be replaced.
     #[error("{0}, expected another character or motion, or \"replace\"")]
-    Taken(Taken),
+    Taken(Box<Taken>),
     /// One of the added clips would replace another.
     #[error("found two clips {motion:?} by {character:?} to add, expected each motion of a character once")]
     Twice {

@@ -16,26 +16,28 @@ impl Sequence {
         let on = |key: usize| self.tracks[t].at(key).map(|stand| (stand, &self.keys[key].strokes[stand.stroke]));
         let (before, after) = (on(k), on(k + 1));
         let share = self.keys[k].spacing.at(u).clamp(0.0, 1.0);
-        let mixed = |colour: &dyn Fn(&(&Stand, &Stroke)) -> Option<[f32; 3]>| match (
-            before.as_ref().and_then(colour),
-            after.as_ref().and_then(colour),
-        ) {
-            (Some(a), Some(b)) => Some([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * share as f32)),
-            (a, b) => a.or(b),
-        };
+        let filled = |(stand, stroke): (&Stand, &Stroke)| stroke.fill_colour.filter(|_| !stand.part);
         let own = before.or(after).map(|(_, stroke)| stroke);
         Stroke {
             points: Vec::new(),
             closed: self.tracks[t].closed,
             widths: blended(before.and_then(widths), after.and_then(widths), share),
-            colour: mixed(&|(_, stroke)| stroke.colour),
-            fill_colour: mixed(&|(stand, stroke)| stroke.fill_colour.filter(|_| !stand.part)),
+            colour: mixed(before.and_then(|(_, s)| s.colour), after.and_then(|(_, s)| s.colour), share),
+            fill_colour: mixed(before.and_then(filled), after.and_then(filled), share),
             // Pieces of an outline are open, and enclose nothing.
             fill: self.tracks[t].closed && own.is_some_and(|s| s.fill),
             material: own.and_then(|s| s.material),
             layer: own.and_then(|s| s.layer),
             peg: None,
         }
+    }
+}
+
+/// A colour between those of two keys.
+fn mixed(before: Option<[f32; 3]>, after: Option<[f32; 3]>, share: f64) -> Option<[f32; 3]> {
+    match (before, after) {
+        (Some(a), Some(b)) => Some([0, 1, 2].map(|c| a[c] + (b[c] - a[c]) * share as f32)),
+        (a, b) => a.or(b),
     }
 }
 
