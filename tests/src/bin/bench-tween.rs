@@ -138,8 +138,8 @@ fn whole_drawings(folders: &[PathBuf], each: bool) -> Result<()> {
 
 fn ink_head(count: &str) {
     println!(
-        "{:22}{count:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>10}",
-        "", "hold", "ours", "ratio", "spans", "worse", "held", "wrong %"
+        "{:22}{count:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>9}{:>8}{:>10}",
+        "", "hold", "ours", "ratio", "spans", "worse", "repeats", "held", "wrong %"
     );
 }
 
@@ -148,8 +148,8 @@ fn ink_row(name: &str, count: usize, all: &InkErrors) {
     let pairs = all.pairs.0 + all.pairs.1;
     let wrong = if pairs == 0 { String::new() } else { format!("{:.1}", 100.0 * all.pairs.1 as f64 / pairs as f64) };
     let (held, ours, ratio) = (all.held / n, all.ours / n, all.ratio());
-    let ((spans, worse), holding) = (all.spans, all.holding);
-    println!("{name:22}{count:8}{held:8.2}{ours:8.2}{ratio:8.3}{spans:8}{worse:8}{holding:8}{wrong:>10}");
+    let ((spans, worse), repeats, holding) = (all.spans, all.repeated, all.holding);
+    println!("{name:22}{count:8}{held:8.2}{ours:8.2}{ratio:8.3}{spans:8}{worse:8}{repeats:9}{holding:8}{wrong:>10}");
 }
 
 fn matching(sets: &[Set], painted: bool) -> Result<()> {

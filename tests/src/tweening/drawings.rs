@@ -57,5 +57,5 @@ pub fn measure(film: &Film, (from, to): (usize, usize)) -> Result<InkErrors> {
     let sequence = Sequence::new(vec![key(from), key(to)], &[found], &GivenPegs::default(), &Options::default())?;
     let lines = |strokes: &[Stroke]| ink(strokes.iter().map(|s| (&s.points[..], s.closed)));
     let truth: Vec<(i32, Vec<Point>)> = (from + 1..to).map(|k| (k as i32, lines(&film.drawings[k]))).collect();
-    Ok(InkErrors::of_span(&sequence, a, &truth))
+    Ok(InkErrors::of_span(&sequence, [a, b], &truth))
 }

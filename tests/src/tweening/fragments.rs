@@ -38,12 +38,12 @@ pub fn measure(set: &Set, (from, to): (i32, i32), cuts: usize, chance: &mut Chan
     }
     let keys = vec![
         Key { frame: from, strokes: a.clone(), ..Key::default() },
-        Key { frame: to, strokes: b, ..Key::default() },
+        Key { frame: to, strokes: b.clone(), ..Key::default() },
     ];
     let sequence = Sequence::new(keys, &[matching], &GivenPegs::default(), &Options::default())?;
     let lines = |frame: i32| ink(there.iter().map(|&i| (&set.parts[i].points[&frame][..], set.parts[i].closed)));
     let truth: Vec<_> = (from + 1..to).map(|frame| (frame, lines(frame))).collect();
-    Ok(InkErrors { pairs, ..InkErrors::of_span(&sequence, &a, &truth) })
+    Ok(InkErrors { pairs, ..InkErrors::of_span(&sequence, [&a, &b], &truth) })
 }
 
 fn chance_order(count: usize, frame: i32) -> Vec<usize> {
