@@ -19,7 +19,8 @@
 //!    `fragments` puts pieces that continue each other together, on both drawings (`joins`), and matches the chains. What
 //!    is surer is kept.
 //!
-//! Pairs made by hand stay as they are. They also count as neighbours of the other strokes. Strokes of different pegs are never pairs.
+//! Pairs made by hand stay as they are, and so do strokes that are on both drawings point by point (`unchanged`). They also count as
+//! neighbours of the other strokes. Strokes of different pegs are never pairs.
 //!
 //! Limits: two equal limbs that have changed places can only be told apart by the strokes attached to them, by their
 //! layers and by their colours. A disc does not show its turn. It is assumed to turn with its surroundings.
@@ -37,6 +38,7 @@ mod relaxation;
 mod similarity;
 mod start;
 mod turns;
+mod unchanged;
 
 pub use super::chain::Chain;
 use super::stroke::{BadPoint, Stroke, checked};
@@ -193,9 +195,11 @@ pub fn match_strokes(
 ) -> Result<Matching, MatchingError> {
     checked(first).map_err(MatchingError::First)?;
     checked(second).map_err(MatchingError::Second)?;
-    let fixed = fixed(first.len(), second.len(), by_hand)?;
+    let mut fixed = fixed(first.len(), second.len(), by_hand)?;
+    let unchanged = unchanged::fix(first, second, &mut fixed);
     let matching = stroke_by_stroke(first, second, &fixed, options, progress)?;
-    let matching = fragments::surer(first, second, &fixed, matching, options, progress)?;
+    let mut matching = fragments::surer(first, second, &fixed, matching, options, progress)?;
+    unchanged::found(&mut matching, &unchanged);
     progress.report("matching strokes", 1.0)?;
     Ok(matching)
 }
