@@ -4,9 +4,8 @@
 //!
 //! - **Integers** (1 to 16 bits per channel; grey, palette, colour, CMYK) are taken as sRGB-encoded.
 //! - **Floats** (OpenEXR, float TIFF) are light. They are encoded and clamped to 0 to 1. NaN becomes black.
-//! - **Transparent pixels** are blended with a mid grey, sRGB-encoded 0.5. Ink may be black or white. On white or black
-//!   paper one of them would vanish; on grey both keep their edges. Integers are blended as encoded values, as painting
-//!   programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light. TIFF says whether
+//! - **Transparent pixels** are blended with a mid grey, sRGB-encoded 0.5, or, behind lines alone, with the paper on which
+//!   these stand out ([`super::backdrop`]). Integers are blended as encoded values, as painting programs blend their antialiased edges. OpenEXR has light multiplied by alpha and is blended as light. TIFF says whether
 //!   its colours are multiplied by alpha (`tags`).
 //! - **Animations** (PNG, WebP) give their first frame.
 //!
@@ -16,6 +15,7 @@
 //! with a palette is refused, and OpenEXR with several channels but no R, G and B (`layered`). The pixels of a picture may use at most
 //! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
+use super::backdrop;
 use super::error::DecodeError;
 use super::open::{check_size, decoder, open};
 use super::stored::Stored;
@@ -24,9 +24,6 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-
-/// The grey with which transparent pixels are blended, sRGB-encoded.
-pub const BACKDROP: f32 = 0.5;
 
 /// Width and height of the picture in a file, in pixels. It reads the header of the file only.
 ///
@@ -47,7 +44,8 @@ pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
 /// A file that does not exist or cannot be read as a picture; a picture of another size, which is not decoded.
 pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
     let (stored, size) = stored(path, expected, size_of::<Colour>())?;
-    raster(size, stored.colours())
+    let backdrop = backdrop::of(&stored, size.0);
+    raster(size, stored.colours(backdrop))
 }
 
 /// The picture in a file with its transparency: red, green and blue light multiplied by alpha, not clamped to 1,

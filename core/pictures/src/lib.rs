@@ -9,6 +9,7 @@
 
 #![forbid(unsafe_code)]
 
+mod backdrop;
 pub mod decode;
 mod error;
 #[cfg(test)]

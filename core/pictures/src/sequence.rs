@@ -7,6 +7,7 @@
 //!
 //! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
+use super::backdrop;
 use super::decode::{Described, described, probe, raster, stored};
 use super::error::DecodeError;
 use super::store;
@@ -93,7 +94,8 @@ impl Sequence {
     /// A frame outside the footage; a file that does not exist, cannot be read or has another size.
     pub fn layer(&self, frame: FrameNumber) -> Result<Raster<[f32; 4]>, FrameError> {
         self.inside(frame)?;
-        self.read(frame, Stored::layer)
+        let (stored, size) = self.stored(frame, size_of::<[f32; 4]>())?;
+        raster(size, stored.layer()).map_err(|error| self.named(frame, self.path(frame), error))
     }
 
     /// Whether a frame has a picture of the footage's size, as far as the head of its file says. Nothing is decoded.
@@ -126,19 +128,33 @@ impl Sequence {
         if (first..=last).contains(&frame) { Ok(()) } else { Err(FrameError::Outside { frame, first, last }) }
     }
 
-    fn read<T: Copy>(&self, frame: FrameNumber, pixels: fn(&Stored) -> Vec<T>) -> Result<Raster<T>, FrameError> {
+    /// A frame's picture as its file has it, with width and height. `pixel` is the number of bytes of a pixel that is made of it.
+    fn stored(&self, frame: FrameNumber, pixel: usize) -> Result<(Arc<Stored>, (usize, usize)), FrameError> {
         let size = (self.footage.width, self.footage.height);
         let path = self.path(frame);
-        let decoded = || {
+        let read = || {
             if let Some(kept) = store::of_process().and_then(|store| store.get(&path, size)) {
-                return raster(size, pixels(&kept));
+                return Ok((kept, size));
             }
-            let (read, size) = stored(&path, Some(size), size_of::<T>())?;
-            let Some(store) = store::of_process() else { return raster(size, pixels(&read)) };
-            let read = store.put(&path, size, read);
-            raster(size, pixels(&read))
+            let (read, size) = stored(&path, Some(size), pixel)?;
+            let Some(store) = store::of_process() else { return Ok((Arc::new(read), size)) };
+            Ok((store.put(&path, size, read), size))
         };
-        decoded().map_err(|error| self.named(frame, path.clone(), error))
+        read().map_err(|error| self.named(frame, path.clone(), error))
+    }
+
+    /// The grey behind transparent pixels of all frames: that of the first frame that can be read. `at` is a frame that can be.
+    fn backdrop(&self, at: FrameNumber, picture: &Stored) -> f32 {
+        if !picture.has_alpha() {
+            return backdrop::GREY;
+        }
+        if let Some(known) = self.locked().backdrop {
+            return known;
+        }
+        let of = |picture: &Stored| backdrop::of(picture, self.footage.width);
+        let earlier = (self.footage.first..at).find_map(|frame| self.stored(frame, size_of::<Colour>()).ok());
+        let found = earlier.map_or_else(|| of(picture), |(first, _)| of(&first));
+        *self.locked().backdrop.get_or_insert(found)
     }
 
     fn named(&self, frame: FrameNumber, path: PathBuf, error: DecodeError) -> FrameError {
@@ -159,7 +175,10 @@ impl FrameSource for Sequence {
         if let Some(picture) = self.locked().get(frame) {
             return Ok(picture);
         }
-        let picture = Arc::new(self.read(frame, Stored::colours)?);
+        let (stored, size) = self.stored(frame, size_of::<Colour>())?;
+        let colours = stored.colours(self.backdrop(frame, &stored));
+        let picture = raster(size, colours).map_err(|error| self.named(frame, self.path(frame), error))?;
+        let picture = Arc::new(picture);
         self.locked().put(frame, &picture);
         Ok(picture)
     }
@@ -173,6 +192,8 @@ struct Kept {
     bytes: usize,
     most: usize,
     time: u64,
+    /// The grey behind transparent pixels, once it is known.
+    backdrop: Option<f32>,
 }
 
 impl Kept {

@@ -96,7 +96,8 @@ mod tests {
         for (name, grey) in [("a", 1), ("b", 2), ("c", 3), ("a", 4)] {
             assert_eq!(store.put(Path::new(name), size, picture(grey)).bytes(), 10);
         }
-        let grey = |name: &str| store.get(Path::new(name), size).map(|stored| (stored.colours()[0][0] * 255.0).round());
+        let grey =
+            |name: &str| store.get(Path::new(name), size).map(|stored| (stored.colours(0.5)[0][0] * 255.0).round());
         assert!(store.get(Path::new("a"), (2, 5)).is_none());
         assert_eq!((grey("a"), grey("b"), grey("c")), (Some(1.0), Some(2.0), None));
         assert_eq!(store.bytes(), 20);

@@ -4,7 +4,6 @@
 //! Floats that came from 16-bit floats, as nearly all OpenEXR files have them, are kept with 16 bits again if every one of
 //! them stays what it was.
 
-use super::decode::BACKDROP;
 use half::f16;
 use image::DynamicImage;
 use rototoon_base::scene::Colour;
@@ -52,12 +51,23 @@ impl Stored {
         }
     }
 
-    /// The pixels as colours, blended with the backdrop.
-    pub fn colours(&self) -> Vec<Colour> {
+    /// Whether pixels may be transparent.
+    pub fn has_alpha(&self) -> bool {
         match &self.pixels {
-            Pixels::Picture(picture) => colours(picture, self.multiplied),
+            Pixels::Picture(picture) => picture.color().has_alpha(),
+            Pixels::Half3(_) => false,
+            Pixels::Half4(_) => true,
+        }
+    }
+
+    /// The pixels as colours, blended with a grey, sRGB-encoded.
+    pub fn colours(&self, backdrop: f32) -> Vec<Colour> {
+        match &self.pixels {
+            Pixels::Picture(picture) => colours(picture, self.multiplied, backdrop),
             Pixels::Half3(pixels) => pixels.iter().map(|p| p.map(|v| encoded(v.to_f32()))).collect(),
-            Pixels::Half4(pixels) => pixels.iter().map(|p| light_over(p.map(f16::to_f32), self.multiplied)).collect(),
+            Pixels::Half4(pixels) => {
+                pixels.iter().map(|p| light_over(p.map(f16::to_f32), self.multiplied, backdrop)).collect()
+            }
         }
     }
 
@@ -92,18 +102,19 @@ fn short<const N: usize>(values: &[f32]) -> Option<Vec<[f16; N]>> {
     pixels.iter().map(one).collect()
 }
 
-fn colours(picture: &DynamicImage, multiplied: bool) -> Vec<Colour> {
+fn colours(picture: &DynamicImage, multiplied: bool, backdrop: f32) -> Vec<Colour> {
+    let ground = Ground { multiplied, backdrop };
     match picture {
-        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), multiplied, byte),
-        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), multiplied, byte),
-        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), multiplied, byte),
-        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), multiplied, byte),
-        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), multiplied, word),
-        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), multiplied, word),
-        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), multiplied, word),
-        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), multiplied, word),
+        DynamicImage::ImageLuma8(p) => whole::<1, _>(p.as_raw(), ground, byte),
+        DynamicImage::ImageLumaA8(p) => whole::<2, _>(p.as_raw(), ground, byte),
+        DynamicImage::ImageRgb8(p) => whole::<3, _>(p.as_raw(), ground, byte),
+        DynamicImage::ImageRgba8(p) => whole::<4, _>(p.as_raw(), ground, byte),
+        DynamicImage::ImageLuma16(p) => whole::<1, _>(p.as_raw(), ground, word),
+        DynamicImage::ImageLumaA16(p) => whole::<2, _>(p.as_raw(), ground, word),
+        DynamicImage::ImageRgb16(p) => whole::<3, _>(p.as_raw(), ground, word),
+        DynamicImage::ImageRgba16(p) => whole::<4, _>(p.as_raw(), ground, word),
         DynamicImage::ImageRgb32F(p) => p.pixels().map(|p| p.0.map(encoded)).collect(),
-        other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied)).collect(),
+        other => other.to_rgba32f().pixels().map(|p| light_over(p.0, multiplied, backdrop)).collect(),
     }
 }
 
@@ -130,12 +141,21 @@ fn word(v: u16) -> f32 {
     v as f32 / 65535.0
 }
 
-/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha. `multiplied` says whether colours are
-/// multiplied by alpha.
-fn whole<const N: usize, V: Copy>(values: &[V], multiplied: bool, unit: impl Fn(V) -> f32) -> Vec<Colour> {
+/// How pixels lie on what is behind them.
+#[derive(Clone, Copy)]
+struct Ground {
+    /// Whether colours are multiplied by alpha.
+    multiplied: bool,
+    /// The grey behind them, sRGB-encoded.
+    backdrop: f32,
+}
+
+/// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha.
+fn whole<const N: usize, V: Copy>(values: &[V], ground: Ground, unit: impl Fn(V) -> f32) -> Vec<Colour> {
+    let Ground { multiplied, backdrop } = ground;
     let over = |v: f32, alpha: f32| match multiplied {
-        true => BACKDROP + v.min(alpha) - alpha * BACKDROP,
-        false => BACKDROP + alpha * (v - BACKDROP),
+        true => backdrop + v.min(alpha) - alpha * backdrop,
+        false => backdrop + alpha * (v - backdrop),
     };
     let (pixels, _) = values.as_chunks::<N>();
     let colour = |pixel: &[V; N]| {
@@ -151,10 +171,10 @@ fn whole<const N: usize, V: Copy>(values: &[V], multiplied: bool, unit: impl Fn(
 }
 
 /// Light with alpha, blended with the backdrop and encoded.
-fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool) -> Colour {
+fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool, backdrop: f32) -> Colour {
     let alpha = if alpha.is_nan() { 0.0 } else { alpha.clamp(0.0, 1.0) };
     let own = if multiplied { 1.0 } else { alpha };
-    [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(BACKDROP)))
+    [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(backdrop)))
 }
 
 /// Light, encoded and clamped to 0 to 1.
@@ -179,7 +199,7 @@ mod tests {
             let (plain, short) = (Stored::new(picture.clone(), multiplied), Stored::new(picture, multiplied).compact());
             assert_eq!((short.bytes(), plain.bytes()), (bytes, 2 * bytes));
             let bits = |pixels: &[Colour]| pixels.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&short.colours()), bits(&plain.colours()));
+            assert_eq!(bits(&short.colours(0.5)), bits(&plain.colours(0.5)));
             let bits = |pixels: &[[f32; 4]]| pixels.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
             assert_eq!(bits(&short.layer()), bits(&plain.layer()));
         }
