@@ -1,9 +1,9 @@
 //! Colours of line drawings: from the painter's clicks to the regions of every frame.
 //!
-//! Work begins on the first frame with clicks. From there the colours go from drawing to drawing, forwards and backwards. Each
-//! drawing is painted by the last one, by the frame with clicks that it comes from, and by the next one with clicks if at least half of the
-//! regions were clicked there. Clicks on a later frame overrule what was carried there, and what follows comes from them: so
-//! a mistake is mended by one click.
+//! Work begins on the model drawing: the first frame on which at least half of the regions were clicked, or the one with the largest share of
+//! them where no frame has as many. From there the colours go from drawing to drawing, forwards and backwards. Each drawing is painted by the last
+//! one, by the model drawing, and by the next drawing with as many clicks. On a frame with fewer clicks, these overrule what was carried there, and
+//! what follows comes from them too: so a mistake is mended by one click, before and after the model drawing.
 
 #[cfg(test)]
 mod tests;
@@ -13,6 +13,7 @@ use crate::export::SvgFill;
 use crate::fill::{Click, Page, Paint, Source, carry, fills};
 use crate::geometry::Point;
 use crate::lines::Options;
+use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
 use crate::scene::{Colour, FrameNumber, FrameSource, Progress, Raster};
@@ -127,23 +128,20 @@ pub fn fill(
     super::memory::to_fill(footage)?;
     let earlier = document.filled().map_err(|error| field(&error))?;
     let sequence = frames(document, folder)?;
-    let first = clicks[0].1.frame;
-    let looked_at = first.min(*range.start())..=first.max(*range.end());
-    gaps::none(&sequence, looked_at.clone())?;
-    let all = looked_at.count();
     let mut painting = Painting {
         frames: &sequence,
         options,
         progress,
         palette: palette(&clicks),
         next: 0,
-        all: all + clicks.len(),
+        all: range.clone().count() + 2 * clicks.len(),
         done: 0,
         found: Vec::new(),
         report: FillReport::default(),
     };
     painting.run(&clicks, &range)?;
     let Painting { mut found, mut report, .. } = painting;
+    report.missed.sort_by_key(|missed| (missed.entry, missed.click));
     found.retain(|drawing| range.contains(&drawing.frame));
     let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
     keep_apart(&mut found, &kept);
@@ -232,7 +230,7 @@ struct Painted {
 
 /// Painting at work.
 struct Painting<'a> {
-    frames: &'a dyn FrameSource,
+    frames: &'a Sequence,
     options: &'a FillOptions,
     progress: &'a dyn Progress,
     palette: Vec<Colour>,
@@ -250,44 +248,75 @@ impl Painting<'_> {
         clicks: &[(usize, FillClicks)],
         range: &RangeInclusive<FrameNumber>,
     ) -> Result<(), PipelineError> {
-        let mut key = self.key(&clicks[0])?;
+        let (model, key, missed) = self.model(clicks)?;
+        let looked_at = key.frame.min(*range.start())..=key.frame.max(*range.end());
+        gaps::none(self.frames, looked_at.clone())?;
+        self.all = self.done + looked_at.count() + clicks.len();
+        self.miss(&clicks[model], &missed);
         self.keep(&key);
-        self.outward(&key, (*range.start()..key.frame).rev(), None)?;
-        for later in &clicks[1..] {
-            if key.frame >= *range.end() {
-                return Ok(());
-            }
-            let next = Some(self.key(later)?).filter(|next| next.paint.clicked() >= WHOLE);
-            let last = self.outward(&key, key.frame + 1..later.1.frame, next.as_ref())?;
-            key = self.mended(&key, &last, later)?;
-            self.keep(&key);
-        }
-        self.outward(&key, key.frame + 1..=*range.end(), None)?;
+        let before: Vec<_> = clicks[..model].iter().rev().collect();
+        self.side(key.clone(), &before, *range.start())?;
+        self.side(key, &clicks[model + 1..].iter().collect::<Vec<_>>(), *range.end())?;
         Ok(self.progress.report("Painting", 1.0)?)
     }
 
-    /// A frame painted by its clicks alone.
-    fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<Painted, PipelineError> {
-        let (picture, mut page) = self.look(clicks.1.frame)?;
-        let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
-        if self.found.is_empty() {
-            self.miss(clicks, &missed);
+    /// The model drawing, its place among the frames with clicks, and its clicks that paint nothing.
+    fn model(&mut self, clicks: &[(usize, FillClicks)]) -> Result<(usize, Painted, Vec<usize>), PipelineError> {
+        let mut best: Option<(usize, Painted, Vec<usize>)> = None;
+        for (k, own) in clicks.iter().enumerate() {
+            let (key, missed) = self.key(own)?;
+            let share = key.paint.clicked();
+            if best.as_ref().is_none_or(|best| share > best.1.paint.clicked()) {
+                best = Some((k, key, missed));
+            }
+            if share >= WHOLE {
+                break;
+            }
         }
-        Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
+        best.ok_or_else(|| field(&"fills: found no click"))
     }
 
-    /// A frame painted by what comes before it, and then by its own clicks.
-    fn mended(
-        &mut self,
-        key: &Painted,
-        last: &Painted,
-        clicks: &(usize, FillClicks),
-    ) -> Result<Painted, PipelineError> {
+    /// Paints the frames on one side of the model drawing, up to the end of the range there. The frames with clicks are in the order in which
+    /// they come.
+    fn side(&mut self, model: Painted, clicks: &[&(usize, FillClicks)], end: FrameNumber) -> Result<(), PipelineError> {
+        let ahead = end > model.frame;
+        let between = move |from: FrameNumber, to: FrameNumber| -> Box<dyn Iterator<Item = FrameNumber>> {
+            if ahead { Box::new(from + 1..to) } else { Box::new((to + 1..from).rev()) }
+        };
+        let mut known = Known { key: model.clone(), mended: None, next: None, last: model };
+        for own in clicks {
+            if (ahead && known.last.frame >= end) || (!ahead && known.last.frame <= end) {
+                return Ok(());
+            }
+            known.next = Some(self.key(own)?.0).filter(|next| next.paint.clicked() >= WHOLE);
+            let from = known.last.frame;
+            self.outward(&mut known, between(from, own.1.frame))?;
+            known.next = None;
+            let painted = self.mended(&known, own)?;
+            self.keep(&painted);
+            if painted.paint.clicked() >= WHOLE {
+                known = Known { key: painted.clone(), mended: None, next: None, last: painted };
+            } else {
+                (known.mended, known.last) = (Some(painted.clone()), painted);
+            }
+        }
+        let from = known.last.frame;
+        self.outward(&mut known, between(from, if ahead { end + 1 } else { end - 1 }))
+    }
+
+    /// A frame painted by its clicks alone, and the clicks that paint nothing.
+    fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, Vec<usize>), PipelineError> {
+        let (picture, mut page) = self.look(clicks.1.frame)?;
+        let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
+        Ok((Painted { frame: clicks.1.frame, picture, page: page.into(), paint }, missed))
+    }
+
+    /// A frame painted by what is known beside it, and then by its own clicks.
+    fn mended(&mut self, known: &Known, clicks: &(usize, FillClicks)) -> Result<Painted, PipelineError> {
         let (picture, mut page) = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
-        let carried = carry(&sources(key, last, None), &mut page, &mut self.next);
-        let (paint, missed) = match carried {
+        let (paint, missed) = match carry(&known.sources(), &mut page, &mut self.next) {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
@@ -295,32 +324,26 @@ impl Painting<'_> {
         Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
     }
 
-    /// Paints frames one after the other, beginning beside a frame with clicks. Returns the last painted drawing.
-    fn outward(
-        &mut self,
-        key: &Painted,
-        frames: impl Iterator<Item = FrameNumber>,
-        next: Option<&Painted>,
-    ) -> Result<Painted, PipelineError> {
-        let mut last = key.clone();
+    /// Paints frames one after the other, beginning beside the last painted one.
+    fn outward(&mut self, known: &mut Known, frames: impl Iterator<Item = FrameNumber>) -> Result<(), PipelineError> {
         for frame in frames {
             let picture = self.frames.picture(frame)?;
-            if picture.data() == last.picture.data() {
+            if picture.data() == known.last.picture.data() {
                 self.progress()?;
-                last.frame = frame;
-                self.keep(&last);
+                known.last.frame = frame;
+                self.keep(&known.last);
                 continue;
             }
             let (picture, mut page) = self.look(frame)?;
-            match carry(&sources(key, &last, next), &mut page, &mut self.next) {
+            match carry(&known.sources(), &mut page, &mut self.next) {
                 Some(paint) => {
-                    last = Painted { frame, picture, page: page.into(), paint };
-                    self.keep(&last);
+                    known.last = Painted { frame, picture, page: page.into(), paint };
+                    self.keep(&known.last);
                 }
                 None => self.report.frames.push(FilledFrame { frame, ..FilledFrame::default() }),
             }
         }
-        Ok(last)
+        Ok(())
     }
 
     fn look(&mut self, frame: FrameNumber) -> Result<(Arc<Raster<Colour>>, Page), PipelineError> {
@@ -365,16 +388,25 @@ impl Painting<'_> {
     }
 }
 
-/// The sources of a drawing. The last one gives the numbers.
-fn sources<'a>(key: &'a Painted, last: &'a Painted, next: Option<&'a Painted>) -> Vec<Source<'a>> {
-    let source = |painted: &'a Painted, own: bool| Source { page: &painted.page, paint: &painted.paint, own };
-    let mut sources = vec![source(key, true)];
-    sources.extend(next.map(|next| source(next, true)));
-    if !Arc::ptr_eq(&last.page, &key.page) {
-        sources.push(source(last, false));
-    } else if next.is_some() {
-        // The numbers are those of the frame before, not of the next one.
-        sources.swap(0, 1);
+/// The painted drawings from which the next one is painted.
+struct Known {
+    /// The model drawing, or a later one with as many clicks.
+    key: Painted,
+    /// The last one with a few clicks, which mend what was carried there.
+    mended: Option<Painted>,
+    /// The next one with as many clicks as a model drawing.
+    next: Option<Painted>,
+    /// The last painted one.
+    last: Painted,
+}
+
+impl Known {
+    /// The sources of the next drawing. The last one gives the numbers.
+    fn sources(&self) -> Vec<Source<'_>> {
+        let is_last = |painted: &Painted| Arc::ptr_eq(&painted.page, &self.last.page);
+        let others = [(Some(&self.key), true), (self.next.as_ref(), true), (self.mended.as_ref(), false)];
+        let before = others.into_iter().filter_map(|(painted, own)| Some((painted.filter(|p| !is_last(p))?, own)));
+        let all = before.chain([(&self.last, is_last(&self.key))]);
+        all.map(|(Painted { page, paint, .. }, own)| Source { page, paint, own }).collect()
     }
-    sources
 }

@@ -146,6 +146,34 @@ fn a_click_on_a_later_frame_mends_it_and_what_follows() {
 }
 
 #[test]
+fn a_click_before_the_model_drawing_mends_it_and_what_comes_before() {
+    let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
+    let model = [click((5.0, 5.0), PAPER), click((x(4) - 35.0, 75.0), RED), click((x(4), 75.0), BLUE)];
+    let mut film = Film::new(5, moving).clicked(&[(2, &[click((x(2), 75.0), RED)]), (4, &model)]);
+    let report = film.fill().unwrap();
+    assert!(report.frames.iter().all(|frame| frame.regions == 3), "one click is no model drawing: {report:?}");
+    let disc = |frame: FrameNumber| film.at(frame, (x(frame), 75.0)).unwrap();
+    assert_eq!([0, 1, 2, 3, 4, 5].map(|frame| disc(frame).colour), [RED, RED, RED, BLUE, BLUE, BLUE]);
+    assert_eq!(disc(2).confidence, 1.0);
+    for frame in 0..=5 {
+        assert_eq!(film.at(frame, (x(frame) - 35.0, 75.0)).unwrap().colour, RED, "frame {frame}");
+        assert_eq!(film.at(frame, (3.0, 3.0)).unwrap().colour, PAPER, "frame {frame}");
+    }
+}
+
+#[test]
+fn of_frames_with_few_clicks_the_one_with_most_is_the_model() {
+    // Of 3 regions one is clicked, and then another one.
+    let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
+    let (first, second) = ([click((x(1), 75.0), BLUE)], [click((x(3) - 35.0, 75.0), RED)]);
+    let mut film = Film::new(4, moving).clicked(&[(1, &first), (3, &second)]);
+    film.fill().unwrap();
+    assert_eq!(film.at(0, (x(0), 75.0)).unwrap().colour, BLUE, "of two with as many, the first one");
+    assert_eq!([3, 4].map(|frame| film.at(frame, (x(frame) - 35.0, 75.0)).unwrap().colour), [RED; 2]);
+    assert_eq!([3, 4].map(|frame| film.at(frame, (x(frame), 75.0)).unwrap().colour), [BLUE; 2]);
+}
+
+#[test]
 fn a_drawing_with_nothing_in_common_is_not_painted_and_told() {
     let cut = |frame: FrameNumber, p: Point| match frame {
         0 => moving(0, p),
