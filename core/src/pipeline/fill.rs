@@ -255,8 +255,9 @@ impl Painting<'_> {
         self.miss(&clicks[model], &missed);
         self.keep(&key);
         let before: Vec<_> = clicks[..model].iter().rev().collect();
-        self.side(key.clone(), &before, *range.start())?;
-        self.side(key, &clicks[model + 1..].iter().collect::<Vec<_>>(), *range.end())?;
+        self.side(key.clone(), &before, Side { ahead: false, end: *range.start() })?;
+        let after: Vec<_> = clicks[model + 1..].iter().collect();
+        self.side(key, &after, Side { ahead: true, end: *range.end() })?;
         Ok(self.progress.report("Painting", 1.0)?)
     }
 
@@ -276,21 +277,17 @@ impl Painting<'_> {
         best.ok_or_else(|| field(&"fills: found no click"))
     }
 
-    /// Paints the frames on one side of the model drawing, up to the end of the range there. The frames with clicks are in the order in which
-    /// they come.
-    fn side(&mut self, model: Painted, clicks: &[&(usize, FillClicks)], end: FrameNumber) -> Result<(), PipelineError> {
-        let ahead = end > model.frame;
-        let between = move |from: FrameNumber, to: FrameNumber| -> Box<dyn Iterator<Item = FrameNumber>> {
-            if ahead { Box::new(from + 1..to) } else { Box::new((to + 1..from).rev()) }
-        };
+    /// Paints the frames on one side of the model drawing. The frames with clicks are in the order in which they come.
+    fn side(&mut self, model: Painted, clicks: &[&(usize, FillClicks)], side: Side) -> Result<(), PipelineError> {
         let mut known = Known { key: model.clone(), mended: None, next: None, last: model };
         for own in clicks {
-            if (ahead && known.last.frame >= end) || (!ahead && known.last.frame <= end) {
+            let frame = own.1.frame;
+            if side.is_over(known.last.frame) {
                 return Ok(());
             }
             known.next = Some(self.key(own)?.0).filter(|next| next.paint.clicked() >= WHOLE);
-            let from = known.last.frame;
-            self.outward(&mut known, between(from, own.1.frame))?;
+            let between = side.between(known.last.frame, frame);
+            self.outward(&mut known, between)?;
             known.next = None;
             let painted = self.mended(&known, own)?;
             self.keep(&painted);
@@ -300,8 +297,8 @@ impl Painting<'_> {
                 (known.mended, known.last) = (Some(painted.clone()), painted);
             }
         }
-        let from = known.last.frame;
-        self.outward(&mut known, between(from, if ahead { end + 1 } else { end - 1 }))
+        let rest = side.between(known.last.frame, if side.ahead { side.end + 1 } else { side.end - 1 });
+        self.outward(&mut known, rest)
     }
 
     /// A frame painted by its clicks alone, and the clicks that paint nothing.
@@ -385,6 +382,27 @@ impl Painting<'_> {
         let frame = painted.frame;
         self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related: true });
         self.found.push(FilledDrawing { frame, regions });
+    }
+}
+
+/// The frames on one side of the model drawing.
+#[derive(Clone, Copy)]
+struct Side {
+    /// Whether they come after it.
+    ahead: bool,
+    /// The last one to paint.
+    end: FrameNumber,
+}
+
+impl Side {
+    /// Whether nothing is left to paint beyond a frame.
+    fn is_over(self, frame: FrameNumber) -> bool {
+        if self.ahead { frame >= self.end } else { frame <= self.end }
+    }
+
+    /// The frames between two, from the first one on.
+    fn between(self, from: FrameNumber, to: FrameNumber) -> Box<dyn Iterator<Item = FrameNumber>> {
+        if self.ahead { Box::new(from + 1..to) } else { Box::new((to + 1..from).rev()) }
     }
 }
 
