@@ -261,20 +261,24 @@ impl Painting<'_> {
         Ok(self.progress.report("Painting", 1.0)?)
     }
 
-    /// The model drawing, its place among the frames with clicks, and its clicks that paint nothing.
+    /// The model drawing, its place among the frames with clicks, and its clicks that paint nothing. Its regions have the first numbers.
     fn model(&mut self, clicks: &[(usize, FillClicks)]) -> Result<(usize, Painted, Vec<usize>), PipelineError> {
-        let mut best: Option<(usize, Painted, Vec<usize>)> = None;
+        let none = self.next;
+        let mut best: Option<(usize, Painted, Vec<usize>, usize)> = None;
         for (k, own) in clicks.iter().enumerate() {
+            self.next = none;
             let (key, missed) = self.key(own)?;
             let share = key.paint.clicked();
             if best.as_ref().is_none_or(|best| share > best.1.paint.clicked()) {
-                best = Some((k, key, missed));
+                best = Some((k, key, missed, self.next));
             }
             if share >= WHOLE {
                 break;
             }
         }
-        best.ok_or_else(|| field(&"fills: found no click"))
+        let (place, key, missed, next) = best.ok_or_else(|| field(&"fills: found no click"))?;
+        self.next = next;
+        Ok((place, key, missed))
     }
 
     /// Paints the frames on one side of the model drawing. The frames with clicks are in the order in which they come.

@@ -12,15 +12,22 @@
 //! What began on the way gets its number forwards only, so a line that neither key has is one stroke on all drawings. It
 //! also goes on behind the second key. A stroke that the first key has and the second one lacks has ended there.
 //!
+//! Where the two sides put a stroke on different lines, it was taken for another one on the way or on a key. The line that [lost](bind()) the
+//! number has a new one there. Ink that nobody explains in the end begins new strokes. Both are followed backwards, as long as nobody else
+//! explains their ink.
+//!
 //! Pictures are looked at twice, in order and back, so that no more than two are in memory. The time is twice that of
 //! carrying from one side.
 
-use super::bind::bind;
+use super::bind::{Bound, bind};
 use super::identify::identify;
-use super::{carry, carry_known};
+use super::{EXPLAINS, carry, carry_known, covered, of_stroke, rest};
 use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Length of the shortest line that begins between two keys where neither side explains it, at 540 lines, added to the width.
+const LONG: f64 = 12.0;
 
 /// A drawing with its strokes.
 pub struct Key {
@@ -72,9 +79,10 @@ pub fn between<E>(
     let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
     let drawn = identify(&came, drawn, drawing.unit, next);
     let began = came.into_iter().filter(|s| !known.contains(&s.track)).collect();
-    let beside = bind([drawn.clone(), began], &drawing).split_off(drawn.len());
-    let mut back =
-        Backwards { known: &known, second: Key { drawing, drawn, beside }, found: Vec::with_capacity(count) };
+    let beside = bind([drawn.clone(), began], &drawing).strokes.split_off(drawn.len());
+    let second = Key { drawing, drawn, beside };
+    let late = Late { next, numbers: BTreeSet::new(), lost: BTreeMap::new(), strokes: Vec::new() };
+    let mut back = Backwards { known: &known, second, found: Vec::with_capacity(count), late };
     back.run(forwards, look)?;
     back.found.reverse();
     Ok((back.found, back.second))
@@ -87,6 +95,19 @@ struct Backwards<'a> {
     second: Key,
     /// The strokes of the drawings between, from the last one on.
     found: Vec<Vec<Tracked>>,
+    late: Late<'a>,
+}
+
+/// Strokes that neither key has and that did not come from the first one.
+struct Late<'a> {
+    /// The next new number.
+    next: &'a mut usize,
+    /// Their numbers.
+    numbers: BTreeSet<usize>,
+    /// The numbers of lines that lost theirs: by whether they came from the second key, and by the lost number.
+    lost: BTreeMap<(bool, usize), usize>,
+    /// Those on the last drawing that was bound.
+    strokes: Vec<Tracked>,
 }
 
 impl Backwards<'_> {
@@ -108,7 +129,10 @@ impl Backwards<'_> {
             }
             let place = forwards.len() + 1;
             let drawing = look(place)?;
-            back = carry_known(after.as_ref().unwrap_or(&self.second.drawing), &back, &drawing);
+            let all = [&back[..], &self.late.strokes].concat();
+            let come = carry_known(after.as_ref().unwrap_or(&self.second.drawing), &all, &drawing);
+            let late: Vec<Tracked>;
+            (late, back) = come.into_iter().partition(|s| self.late.numbers.contains(&s.track));
             let renamed = self.met(&back, &there, &drawing);
             let mut there = vec![there];
             for strokes in forwards.iter_mut().chain(&mut self.found).chain(&mut there) {
@@ -119,8 +143,9 @@ impl Backwards<'_> {
             }
             let (there, began) = there.into_iter().flatten().partition(|s| self.known.contains(&s.track));
             let nearer_first = 2 * place <= count + 1;
-            let sides = if nearer_first { [there, back.clone(), began] } else { [back.clone(), there, began] };
-            self.found.push(bind(sides, &drawing));
+            let [near, far] = if nearer_first { [there, back.clone()] } else { [back.clone(), there] };
+            let bound = bind([near, far, began, late], &drawing);
+            self.found.push(self.late.add(bound, !nearer_first, &drawing));
             after = Some(drawing);
         }
         Ok(())
@@ -140,14 +165,36 @@ impl Backwards<'_> {
     }
 }
 
-/// Gives strokes other numbers. If a drawing has both, the first stroke stays.
-fn rename(strokes: &mut Vec<Tracked>, renamed: &BTreeMap<usize, usize>) {
-    if renamed.is_empty() {
-        return;
+impl Late<'_> {
+    /// Adds the lines that lost their numbers, and what nobody explains, to the strokes of a drawing. `second` says whether the first side
+    /// came from the second key.
+    fn add(&mut self, bound: Bound, second: bool, drawing: &Drawing) -> Vec<Tracked> {
+        let Bound { mut strokes, apart } = bound;
+        for (first, line) in apart {
+            let track = *self.lost.entry((first == second, line.track)).or_insert_with(|| {
+                *self.next += 1;
+                *self.next - 1
+            });
+            if strokes.iter().all(|stroke| stroke.track != track) {
+                strokes.push(Tracked { track, ..line });
+                self.numbers.insert(track);
+            }
+        }
+        let reach = EXPLAINS * drawing.unit + 0.5 * drawing.width;
+        let least = LONG * drawing.unit + drawing.width;
+        for rest in rest::left(&drawing.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, least) {
+            strokes.push(Tracked::sure(*self.next, drawing.finished(&rest)));
+            self.numbers.insert(*self.next);
+            *self.next += 1;
+        }
+        self.strokes = strokes.iter().filter(|stroke| self.numbers.contains(&stroke.track)).cloned().collect();
+        strokes
     }
-    let mut seen = BTreeSet::new();
-    strokes.retain_mut(|s| {
-        s.track = renamed.get(&s.track).copied().unwrap_or(s.track);
-        seen.insert(s.track)
-    });
+}
+
+/// Gives strokes other numbers. A stroke of a drawing that has the other number already keeps its own: both lie on ink.
+fn rename(strokes: &mut [Tracked], renamed: &BTreeMap<usize, usize>) {
+    let there: BTreeSet<usize> = strokes.iter().map(|s| s.track).collect();
+    let free = |track: &usize| renamed.get(track).copied().filter(|other| !there.contains(other));
+    strokes.iter_mut().for_each(|s| s.track = free(&s.track).unwrap_or(s.track));
 }

@@ -1,8 +1,12 @@
 //! A drawing to which strokes came from several sides: one set of strokes for its ink.
 //!
-//! The sides come in the order of trust. All strokes of the first one are taken. A stroke of a later one is taken where
+//! The sides come in the order of trust. All numbers of the first one are taken. A stroke of a later one is taken where
 //! nobody before it has its number, and where the drawing has ink for it that no other stroke explains. So a stroke that
 //! appears or vanishes between two keys is there as long as its ink is.
+//!
+//! Two sides may put a stroke on different ink. The line is taken that explains more of what is left when all strokes are there on which
+//! the sides agree, times its confidence. The other line may be right too, and its number wrong: a stroke was taken for another one on a key. If it lies on
+//! ink that nobody explains in the end, it is told [apart](Bound::apart).
 //!
 //! A stroke that comes from several sides is as long as the sides together: a part of it that is hidden on one key is
 //! known from the other. What goes on from the end of the first side's line, on ink that nobody explains, lengthens it. It is
@@ -23,23 +27,48 @@ const LEAST: f64 = 1.0;
 /// Distance of a piece from the end that it lengthens, in the same unit.
 const JOINS: f64 = 2.0;
 
+/// One set of strokes for the ink of a drawing.
+#[derive(Debug, Default)]
+pub struct Bound {
+    /// The strokes.
+    pub strokes: Vec<Tracked>,
+    /// Lines on ink that none of the strokes explains, with the numbers of strokes that are elsewhere, and whether they are of the first side.
+    pub apart: Vec<(bool, Tracked)>,
+}
+
 /// The strokes of the first side, and what the others know besides, on `drawing`.
-pub fn bind(sides: impl IntoIterator<Item = Vec<Tracked>>, drawing: &Drawing) -> Vec<Tracked> {
+pub fn bind(sides: impl IntoIterator<Item = Vec<Tracked>>, drawing: &Drawing) -> Bound {
     let mut sides = sides.into_iter();
-    let mut bound = Bound::new(EXPLAINS * drawing.unit + 0.5 * drawing.width);
-    sides.next().unwrap_or_default().into_iter().for_each(|stroke| bound.add(stroke));
-    for more in sides.flatten().filter(|s| s.stroke.points.len() > 1) {
-        match bound.place.get(&more.track) {
-            Some(&at) => bound.join(at, &more),
-            None if bound.explained(&bound.dense(&more.stroke)) < SAME => bound.add(more),
+    let first = sides.next().unwrap_or_default();
+    let (mut same, mut more): (Vec<Option<Tracked>>, Vec<Tracked>) = (vec![None; first.len()], Vec::new());
+    let place: BTreeMap<usize, usize> = first.iter().enumerate().map(|(k, stroke)| (stroke.track, k)).collect();
+    for other in sides.flatten().filter(|s| s.stroke.points.len() > 1) {
+        match place.get(&other.track).map(|&k| &mut same[k]) {
+            Some(free @ None) => *free = Some(other),
+            Some(_) => {}
+            None => more.push(other),
+        }
+    }
+    let mut binding = Binding::new(EXPLAINS * drawing.unit + 0.5 * drawing.width);
+    let mut apart = binding.chosen(first, &mut same);
+    for (at, other) in same.into_iter().enumerate() {
+        other.iter().for_each(|other| binding.lengthen(at, &other.stroke));
+    }
+    for other in more {
+        match binding.place.get(&other.track) {
+            Some(&at) => binding.join(at, &other),
+            None if binding.explained(&binding.dense(&other.stroke)) < SAME => binding.add(other),
             None => {}
         }
     }
-    bound.strokes
+    let reach = binding.reach;
+    let is_long = |s: &Stroke| polyline::length(&s.points, s.closed) >= LEAST * reach;
+    apart.retain(|(_, s)| is_long(&s.stroke) && binding.explained(&binding.dense(&s.stroke)) < SAME);
+    Bound { strokes: binding.strokes, apart }
 }
 
-/// The strokes that are taken.
-struct Bound {
+/// Strokes that are being bound.
+struct Binding {
     strokes: Vec<Tracked>,
     /// The place of each number among them.
     place: BTreeMap<usize, usize>,
@@ -50,10 +79,57 @@ struct Bound {
     reach: f64,
 }
 
-impl Bound {
+impl Binding {
     fn new(reach: f64) -> Self {
         let (strokes, place, points) = (Vec::new(), BTreeMap::new(), Vec::new());
         Self { strokes, place, points, cells: Cells::new(std::iter::empty(), reach), reach }
+    }
+
+    /// Takes the strokes of the first side, each with the same stroke of another one. Where the two disagree, the better line is taken and the
+    /// other one returned; `same` keeps those that agree.
+    fn chosen(&mut self, mut first: Vec<Tracked>, same: &mut [Option<Tracked>]) -> Vec<(bool, Tracked)> {
+        let mut open = Vec::new();
+        for (k, own) in first.iter_mut().enumerate() {
+            match &same[k] {
+                Some(other) if !self.agree(&own.stroke, &other.stroke) => open.push(k),
+                other => {
+                    self.cover(self.dense(&own.stroke));
+                    own.confidence =
+                        other.as_ref().map_or(own.confidence, |o| of_both(own.confidence, o.confidence, true));
+                }
+            }
+        }
+        // The surest come first.
+        let surest = |k: &usize| same[*k].as_ref().map_or(0.0, |other| other.confidence).max(first[*k].confidence);
+        open.sort_by(|a, b| surest(b).total_cmp(&surest(a)).then(a.cmp(b)));
+        let mut apart = Vec::new();
+        for k in open {
+            let Some(mut other) = same[k].take() else { continue };
+            let own = &mut first[k];
+            let better = self.worth(&other) > self.worth(own);
+            if better {
+                std::mem::swap(own, &mut other);
+            }
+            self.cover(self.dense(&own.stroke));
+            own.confidence = of_both(own.confidence, other.confidence, false);
+            apart.push((better, other));
+        }
+        self.place = first.iter().enumerate().map(|(k, stroke)| (stroke.track, k)).collect();
+        self.strokes = first;
+        apart
+    }
+
+    /// The length of ink that a stroke alone explains, times its confidence.
+    fn worth(&self, tracked: &Tracked) -> f64 {
+        let Tracked { stroke, confidence, .. } = tracked;
+        let free = 1.0 - self.explained(&self.dense(stroke));
+        confidence * free * polyline::length(&stroke.points, stroke.closed)
+    }
+
+    /// Whether most of a line lies on another one.
+    fn agree(&self, own: &Stroke, other: &Stroke) -> bool {
+        let near = |p: &&Point| polyline::distance(**p, &own.points, own.closed) <= self.reach;
+        other.points.iter().filter(near).count() as f64 >= SAME * other.points.len() as f64
     }
 
     fn dense(&self, stroke: &Stroke) -> Vec<Point> {
@@ -61,8 +137,7 @@ impl Bound {
     }
 
     fn add(&mut self, tracked: Tracked) {
-        let own = self.dense(&tracked.stroke);
-        self.cover(own);
+        self.cover(self.dense(&tracked.stroke));
         self.place.insert(tracked.track, self.strokes.len());
         self.strokes.push(tracked);
     }
@@ -83,10 +158,8 @@ impl Bound {
 
     /// Joins a stroke with the same stroke of another side.
     fn join(&mut self, at: usize, other: &Tracked) {
+        let agree = self.agree(&self.strokes[at].stroke, &other.stroke);
         let own = &mut self.strokes[at];
-        let line = &own.stroke;
-        let near = |p: &&Point| polyline::distance(**p, &line.points, line.closed) <= self.reach;
-        let agree = other.stroke.points.iter().filter(near).count() as f64 >= SAME * other.stroke.points.len() as f64;
         own.confidence = of_both(own.confidence, other.confidence, agree);
         self.lengthen(at, &other.stroke);
     }

@@ -154,7 +154,7 @@ fn a_click_before_the_model_drawing_mends_it_and_what_comes_before() {
     assert!(report.frames.iter().all(|frame| frame.regions == 3), "one click is no model drawing: {report:?}");
     let disc = |frame: FrameNumber| film.at(frame, (x(frame), 75.0)).unwrap();
     assert_eq!([0, 1, 2, 3, 4, 5].map(|frame| disc(frame).colour), [RED, RED, RED, BLUE, BLUE, BLUE]);
-    assert_eq!(disc(2).confidence, 1.0);
+    assert_eq!((disc(2).confidence, disc(4).track), (1.0, 2), "the numbers of the model drawing begin with 0");
     for frame in 0..=5 {
         assert_eq!(film.at(frame, (x(frame) - 35.0, 75.0)).unwrap().colour, RED, "frame {frame}");
         assert_eq!(film.at(frame, (3.0, 3.0)).unwrap().colour, PAPER, "frame {frame}");
