@@ -195,6 +195,32 @@ mod tests {
         assert!(leaks(&closed, &paint, &closed, &still).is_empty());
     }
 
+    /// A box with a disc of radius 9 in it, whose outline has a gap of a width, or is not there at all.
+    fn disc(gap: Option<f64>) -> Layout {
+        let ink = Raster::from_fn(300, 540, |x, y| {
+            let at = Point::new(x as f64 - 150.0, y as f64 - 270.0);
+            let outer = at.x.abs().max(at.y.abs()) == 100.0;
+            let on = (at.length() - 9.0).abs() < 0.8;
+            outer || (on && gap.is_some_and(|gap| at.x < 0.0 || 2.0 * at.y.abs() >= gap))
+        });
+        Layout::new(&Regions::new(&ink))
+    }
+
+    #[test]
+    fn what_leaks_through_a_gap_nearly_as_wide_as_itself_is_known_by_its_outline() {
+        let (closed, still) = (disc(Some(0.0)), Shifts::new(&[], 300, 540, 1.0));
+        let paint = painted(&closed);
+        for gap in [4.0, 8.0, 10.0] {
+            let open = disc(Some(gap));
+            assert_eq!(open.figures.len(), 3, "outside and one room");
+            let found = leaks(&closed, &paint, &open, &still);
+            let [(_, places)] = found.as_slice() else { panic!("{gap}: {found:?}") };
+            let in_disc = |p: &&Point| p.distance(Point::new(150.5, 270.5)) < 6.0;
+            assert_eq!(places.iter().filter(in_disc).count(), 1, "{gap}: {places:?}");
+        }
+        assert!(leaks(&closed, &paint, &disc(None), &still).is_empty(), "it has gone behind something");
+    }
+
     #[test]
     fn areas_of_one_room_do_not_split_it_among_them() {
         // The painted drawing has a second wall, in the right room. It has gone.

@@ -198,3 +198,39 @@ fn rename(strokes: &mut [Tracked], renamed: &BTreeMap<usize, usize>) {
     let free = |track: &usize| renamed.get(track).copied().filter(|other| !there.contains(other));
     strokes.iter_mut().for_each(|s| s.track = free(&s.track).unwrap_or(s.track));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Options;
+    use rototoon_base::geometry::Point;
+    use rototoon_base::scene::Raster;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_nobody_explains_is_new_and_a_line_that_lost_its_number_has_one_of_its_own() {
+        let heights = [20usize, 50, 80];
+        let ink = |x: usize, y: usize| (10..110).contains(&x) && heights.iter().any(|h| y.abs_diff(*h) < 2);
+        let picture = Raster::from_fn(120, 100, |x, y| if ink(x, y) { [0.05; 3] } else { [1.0; 3] });
+        let drawing = Drawing::new(Arc::new(picture), &Options::default());
+        let line = |track: usize, y: f64| {
+            let points = (0..34).map(|k| Point::new(10.5 + 3.0 * f64::from(k), y + 0.5)).collect();
+            Tracked::sure(track, Stroke { points, ..Stroke::default() })
+        };
+        let mut next = 7;
+        let mut late = Late { next: &mut next, numbers: BTreeSet::new(), lost: BTreeMap::new(), strokes: Vec::new() };
+        let bound = || Bound { strokes: vec![line(1, 20.0)], apart: vec![(false, line(1, 50.0))] };
+        let named = |strokes: &[Tracked]| -> Vec<(usize, f64)> {
+            strokes.iter().map(|s| (s.track, s.stroke.points[0].y.round())).collect()
+        };
+        let found = named(&late.add(bound(), true, &drawing));
+        assert_eq!(found.iter().map(|own| own.0).collect::<Vec<_>>(), [1, 7, 8]);
+        assert!((found[1].1 - 50.0).abs() <= 1.0 && (found[2].1 - 80.0).abs() <= 1.0, "{found:?}");
+        assert_eq!(late.strokes.len(), 2, "both go on");
+        // On the next drawing the line has the same number, and one of the other side has another.
+        let again = late.add(bound(), true, &drawing);
+        assert_eq!(again[1].track, 7);
+        let other = late.add(bound(), false, &drawing);
+        assert_eq!(other[1].track, 10);
+    }
+}

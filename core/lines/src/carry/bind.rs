@@ -207,3 +207,49 @@ fn extended(stroke: &mut Stroke, other: &Stroke, run: &[usize], reach: f64) -> b
     }
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Options;
+    use rototoon_base::scene::Raster;
+    use std::sync::Arc;
+
+    /// Lines at the heights 30 and 70.
+    fn drawing() -> Drawing {
+        let ink = |x: usize, y: usize| (10..110).contains(&x) && (y.abs_diff(30) < 2 || y.abs_diff(70) < 2);
+        let picture = Raster::from_fn(120, 100, |x, y| if ink(x, y) { [0.05; 3] } else { [1.0; 3] });
+        Drawing::new(Arc::new(picture), &Options::default())
+    }
+
+    fn line(track: usize, y: f64, confidence: f64) -> Tracked {
+        let points = (0..34).map(|k| Point::new(10.5 + 3.0 * f64::from(k), y + 0.5)).collect();
+        let stroke = Stroke { points, ..Stroke::default() };
+        Tracked { track, stroke, confidence }
+    }
+
+    fn heights(strokes: &[Tracked]) -> Vec<(usize, f64)> {
+        strokes.iter().map(|s| (s.track, s.stroke.points[0].y - 0.5)).collect()
+    }
+
+    #[test]
+    fn of_two_lines_of_a_stroke_the_one_that_explains_more_ink_is_taken() {
+        let near = vec![line(1, 30.0, 0.9), line(2, 30.0, 0.6)];
+        let far = vec![line(1, 30.0, 0.9), line(2, 70.0, 0.5)];
+        let bound = bind([near, far], &drawing());
+        assert_eq!(heights(&bound.strokes), [(1, 30.0), (2, 70.0)]);
+        assert!(bound.apart.is_empty(), "stroke 1 explains the other line");
+        assert!(bound.strokes[0].confidence > 0.9, "both sides agree");
+        assert!(bound.strokes[1].confidence < 0.5, "and here they do not");
+    }
+
+    #[test]
+    fn both_lines_of_a_stroke_stay_where_nothing_else_explains_them() {
+        let [sure, unsure] = [(30.0, 0.9), (70.0, 0.6)];
+        for (near, far, first) in [(sure, unsure, false), (unsure, sure, true)] {
+            let bound = bind([vec![line(1, near.0, near.1)], vec![line(1, far.0, far.1)]], &drawing());
+            assert_eq!(heights(&bound.strokes), [(1, 30.0)]);
+            assert_eq!((bound.apart[0].0, heights(&[bound.apart[0].1.clone()])), (first, vec![(1, 70.0)]));
+        }
+    }
+}
