@@ -16,8 +16,8 @@ use rototoon_base::scene::Raster;
 use rototoon_lines::ink::distance;
 use std::collections::{BTreeMap, BinaryHeap};
 
-/// Half the width of the widest gap, in pixels at 540 lines.
-const GAP: f64 = 5.0;
+/// Half the width of the widest gap, in pixels at 540 lines: where the outline of what leaks says nothing, and where it is there.
+const GAP: [f64; 2] = [5.0, 8.0];
 /// Depth of a gap, as a share of that of the shallower area: where its outline says nothing, and where it is there.
 const NARROW: f32 = 0.5;
 const NEARLY: f32 = 0.85;
@@ -102,10 +102,10 @@ fn places(region: usize, own: &[(usize, usize, f64)], to: &Layout, seen: &Raster
         }
         let Some(end) = deepest(source) else { continue };
         let outlined = open_share(region, source, to, seen, &depth) <= OPEN;
-        let narrow = if outlined { NEARLY } else { NARROW };
+        let (gap, narrow) = if outlined { (GAP[1], NEARLY) } else { (GAP[0], NARROW) };
         let parted = |(start, levels): &(Deep, Vec<f32>)| {
             let level = levels[end.1];
-            f64::from(level) <= GAP * to.unit && level < narrow * start.0.min(end.0)
+            f64::from(level) <= gap * to.unit && level < narrow * start.0.min(end.0)
         };
         let is_large = outlined || area >= LEAST[1] * to.unit * to.unit;
         if is_large && found.iter().all(parted) {
@@ -210,7 +210,7 @@ mod tests {
     fn what_leaks_through_a_gap_nearly_as_wide_as_itself_is_known_by_its_outline() {
         let (closed, still) = (disc(Some(0.0)), Shifts::new(&[], 300, 540, 1.0));
         let paint = painted(&closed);
-        for gap in [4.0, 8.0, 10.0] {
+        for gap in [4.0, 8.0, 12.0] {
             let open = disc(Some(gap));
             assert_eq!(open.figures.len(), 3, "outside and one room");
             let found = leaks(&closed, &paint, &open, &still);
