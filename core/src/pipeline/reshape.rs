@@ -6,14 +6,16 @@
 //! - `motion`: the clip in the drawing's proportions and place, its feet on the drawing's ground
 //! - `feet`: the drawing's feet and its ground
 //! - `bodies`: every closed part follows the limbs that carry it ([`crate::reshape::puppet`]), corrected by what other
-//!   frames show of it ([`crate::reshape::examples`]), and takes along the strokes and open contours that lie on it
-//! - `loose`: what parts follow that no limb carries
+//!   frames show of it ([`crate::reshape::examples`])
+//! - `lines`: the strokes and open contours, with the part on which they lie or on their own
+//! - `loose`: what parts and lines follow that no limb carries
 //! - `store`: the result in the document
 //!
 //! Marks "in front" and "behind" give the depths of each frame.
 
 mod bodies;
 mod feet;
+mod lines;
 mod loose;
 mod motion;
 mod moves;
@@ -94,8 +96,11 @@ pub struct ReshapeJob<'a> {
 /// What was made.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reshaped {
-    /// Parts that no limb carries and for which the document does not say what they follow, each with what it was given.
+    /// Parts that no limb carries, and open contours that lie on no part, for which the document does not say what they follow, each
+    /// with what it was given.
     pub given: Vec<(String, Given)>,
+    /// By number the strokes of the drawing that lie on no part, each with what it was given.
+    pub strokes: Vec<(usize, Given)>,
     /// Parts that move without bending.
     pub rigid: Vec<String>,
     /// Chains of the drawing's skeleton that no chain of the clip moves.
@@ -119,7 +124,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let parts = &document.scene.parts;
     let bindings = Bindings::new(&set, parts).map_err(wrong)?;
     let motion = motion::of(&set, &bindings, parts, rest, (job, footage.first))?;
-    let mut bodies = bodies::of(parts, &strokes, &set, &motion, rest)?;
+    let (mut bodies, loose) = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
     let depths = depths(&set, parts, footage.first..=footage.last)?;
     progress.report(STEP, 0.05)?;
@@ -135,6 +140,9 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
     let rigid = bodies.iter().zip(&moved).filter(|(_, m)| m.rigid).map(|(b, _)| parts[b.part].name.clone()).collect();
     let given = bodies.iter().filter_map(|body| Some((body.name.clone(), body.given.clone()?)));
+    let given = given.chain(loose.iter().filter_map(|line| Some((line.name.clone()?, line.given.clone()?))));
+    let free = loose.iter().filter(|line| line.name.is_none());
+    let free = free.filter_map(|line| Some((line.number, line.given.clone()?)));
     let points = bodies.iter().zip(&moved).filter(|(body, _)| body.more > 0);
     let points = points.map(|(body, moved)| {
         let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
@@ -142,14 +150,17 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     });
     let report = Reshaped {
         given: given.collect(),
+        strokes: free.collect(),
         rigid,
-        still: motion.still,
+        still: motion.still.clone(),
         mirrored: motion.mirrored,
         sides: motion.sides,
         points: points.collect(),
     };
     let placed = rebound(&set, &bindings, parts, rest);
-    store::store(document, footage, (&bodies, &moved), &strokes, &depths);
+    let loose: Vec<_> =
+        loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
+    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths);
     document.set_limbs(&placed);
     Ok(report)
 }
@@ -265,6 +276,8 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
 
 #[cfg(test)]
 mod animals;
+#[cfg(test)]
+mod scenery;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The closed parts of a drawing with everything that follows them, and where they are on each frame.
 
-use super::loose::{self, Given};
+use super::lines::{self, LooseLine};
+use super::loose::{self, Given, Host, Scenery};
 use super::motion::Motion;
 use super::{PipelineError, wrong};
-use crate::geometry::{Point, polygon, polyline};
+use crate::geometry::{Point, polygon};
 use crate::project::drawings::DrawnStroke;
 use crate::reshape::examples::Corrections;
 use crate::reshape::mean_value::weights;
@@ -18,9 +19,9 @@ pub(super) struct Body {
     pub outline: Vec<Point>,
     /// The limbs that carry it; none if it follows something else.
     pub carriers: Vec<Carrier>,
-    /// What it follows if no limb carries it.
-    follows: Option<Given>,
-    /// The same, if the document does not say it.
+    /// What moves it if no limb does; a part in place of limbs has that part's limbs.
+    pub follows: Option<Given>,
+    /// What it follows if no limb carries it, if the document does not say it.
     pub given: Option<Given>,
     /// Whether it is a shoe.
     shoe: bool,
@@ -45,21 +46,16 @@ pub(super) struct Moved {
 /// What moves the points of a body.
 enum Drive {
     Limbs(Box<Puppet>),
-    Root,
-    Contact,
-    Nothing,
+    Given(Given),
 }
 
 impl Drive {
     /// The points in a pose of the limbs, with the pelvis at `root`.
     fn pose(&mut self, points: &[Point], limbs: &[LimbPose], shift: Point) -> Result<Vec<Point>, PuppetError> {
-        let shift = match self {
-            Self::Limbs(puppet) => return puppet.pose(limbs),
-            Self::Root => shift,
-            Self::Contact => Point::new(shift.x, 0.0),
-            Self::Nothing => Point::ZERO,
-        };
-        Ok(points.iter().map(|p| *p + shift).collect())
+        match self {
+            Self::Limbs(puppet) => puppet.pose(limbs),
+            Self::Given(given) => Ok(points.iter().map(|p| *p + given.shift(shift)).collect()),
+        }
     }
 }
 
@@ -95,9 +91,7 @@ impl Body {
                 let puppet = Puppet::new(&self.outline, &self.points, &motion.rest, &self.carriers, options)?;
                 Drive::Limbs(Box::new(puppet))
             }
-            Some(Given::Root) => Drive::Root,
-            Some(Given::Contact) => Drive::Contact,
-            Some(Given::Nothing) => Drive::Nothing,
+            Some(given) => Drive::Given(given.clone()),
         })
     }
 
@@ -120,63 +114,82 @@ impl Body {
     }
 }
 
-/// The closed parts, each with the strokes and open contours that lie on it.
+/// The closed parts, each with the strokes and open contours that go with it, and the lines that go with none.
 pub(super) fn of(
     parts: &[Part],
     strokes: &[DrawnStroke],
     set: &LimbSet,
     motion: &Motion,
     frame: FrameNumber,
-) -> Result<Vec<Body>, PipelineError> {
+) -> Result<(Vec<Body>, Vec<LooseLine>), PipelineError> {
     let closed = parts.iter().enumerate().filter(|(_, part)| part.closed);
     let mut bodies: Vec<Body> = closed.filter_map(|(index, part)| body((index, part), set, motion, frame)).collect();
     if bodies.is_empty() {
         return Err(wrong(format!("parts: found no closed contour on frame {frame}, expected at least one")));
     }
-    put_loose(&mut bodies, (parts, frame), set, motion)?;
-    let open = parts.iter().filter(|part| !part.closed).filter_map(|part| part.points_at(frame));
-    let lines: Vec<&Vec<Point>> = strokes.iter().map(|stroke| &stroke.points).chain(open).collect();
-    for (number, line) in lines.into_iter().enumerate() {
-        let owner = owner(&bodies, parts, frame, line);
-        bodies[owner].points.extend(line);
-        bodies[owner].strokes.push((number, line.len()));
-    }
-    Ok(bodies)
+    let scenery = put_loose(&mut bodies, (parts, frame), set, motion)?;
+    let loose = lines::put(&mut bodies, (parts, strokes, frame), set, &scenery)?;
+    Ok((bodies, loose))
 }
 
-/// Gives the bodies that no limb carries what they follow.
-fn put_loose(
+/// Gives the bodies that no limb carries what they follow. Returns on what lines may lie.
+fn put_loose<'a>(
     bodies: &mut [Body],
     (parts, frame): (&[Part], FrameNumber),
     set: &LimbSet,
-    motion: &Motion,
-) -> Result<(), PipelineError> {
-    let carried = bodies.iter().filter(|body| !body.carriers.is_empty()).map(|body| loose::Carried {
-        name: &body.name,
-        outline: &body.outline,
+    motion: &'a Motion,
+) -> Result<Scenery<'a>, PipelineError> {
+    let host = |body: &Body| Host {
+        name: body.name.clone(),
+        outline: body.outline.clone(),
         depth: parts[body.part].depth_at(frame),
-    });
-    let carried: Vec<loose::Carried> = carried.collect();
-    let what = |body: &Body| match loose::asked(set, &body.name) {
-        Some(asked) => (asked, true),
-        None => (loose::found(&body.outline, &carried, set, motion), false),
+        limb: loose::is_limb(set, &body.name),
+        loose: body.follows.is_some(),
+        given: body.follows.clone().filter(|given| !matches!(given, Given::Part(_))),
     };
-    let loose: Vec<(usize, (Given, bool))> =
-        (0..bodies.len()).filter(|&k| bodies[k].carriers.is_empty()).map(|k| (k, what(&bodies[k]))).collect();
-    for (k, (what, asked)) in loose {
-        if let Given::Part(name) = &what {
-            let other = bodies.iter().find(|body| body.name == *name && body.follows.is_none());
-            let other = other.filter(|body| !body.carriers.is_empty()).ok_or_else(|| {
-                let found = format!("follows.{:?}: found part {name:?}", bodies[k].name);
-                wrong(format!("{found}, expected a closed part that a limb carries"))
-            })?;
-            let (carriers, shoe) = (other.carriers.clone(), other.shoe);
-            (bodies[k].carriers, bodies[k].shoe) = (carriers, shoe);
-        }
-        bodies[k].given = (!asked).then(|| what.clone());
-        bodies[k].follows = Some(what);
+    let (carried, mut waiting): (Vec<usize>, Vec<usize>) =
+        (0..bodies.len()).partition(|&k| !bodies[k].carriers.is_empty());
+    let whole: Vec<Point> = carried.iter().flat_map(|&k| bodies[k].outline.iter().copied()).collect();
+    let hosts = carried.iter().map(|&k| host(&bodies[k])).collect();
+    let mut scenery = Scenery { hosts, figure: polygon::bounds(&whole), motion };
+    let area = |k: &usize| polygon::signed_area(&bodies[*k].outline).abs();
+    waiting.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    while !waiting.is_empty() {
+        // A part waits for the one of which the document says that it follows it.
+        let asked = |k: &usize| loose::asked(set, &bodies[*k].name);
+        let waits =
+            |k: &usize| matches!(asked(k), Some(Given::Part(of)) if waiting.iter().any(|w| bodies[*w].name == of));
+        let next = waiting.iter().position(|k| !waits(k)).unwrap_or(0);
+        let k = waiting.remove(next);
+        let asked = loose::asked(set, &bodies[k].name);
+        let what =
+            asked.clone().unwrap_or_else(|| scenery.of_part(&bodies[k].outline, parts[bodies[k].part].depth_at(frame)));
+        follow(bodies, k, &what, &scenery)?;
+        bodies[k].given = asked.is_none().then_some(what);
+        scenery.hosts.push(host(&bodies[k]));
+    }
+    Ok(scenery)
+}
+
+/// Lets a body move as another one, or as it is given.
+fn follow(bodies: &mut [Body], k: usize, what: &Given, scenery: &Scenery) -> Result<(), PipelineError> {
+    bodies[k].follows = Some(what.clone());
+    if let Given::Part(name) = what {
+        let known = scenery.hosts.iter().any(|host| host.name == *name);
+        let other = bodies.iter().find(|body| known && body.name == *name);
+        let other = other.ok_or_else(|| not_followed(&bodies[k].name, name))?;
+        let (carriers, shoe, follows) = (other.carriers.clone(), other.shoe, other.follows.clone());
+        bodies[k].follows = follows.or_else(|| Some(what.clone()));
+        (bodies[k].carriers, bodies[k].shoe) = (carriers, shoe);
     }
     Ok(())
+}
+
+/// The error about a part that another one cannot follow.
+pub(super) fn not_followed(part: &str, found: &str) -> PipelineError {
+    wrong(format!(
+        "follows.{part:?}: found part {found:?}, expected a closed part that does not itself follow {part:?}"
+    ))
 }
 
 /// A closed part on the frame where it is at rest; none where it has no points there.
@@ -214,19 +227,4 @@ fn carriers(part: &Part, set: &LimbSet, motion: &Motion) -> (Vec<Carrier>, bool)
         Some(Carrier { limb, turn: own.turn, rigidity: l.rigidity, whole: set.template.on_head(l.to) })
     });
     (told.collect(), false)
-}
-
-/// The body that a line lies on: the one with most of its points inside, of several the nearest to the viewer; else the
-/// one whose outline is nearest.
-fn owner(bodies: &[Body], parts: &[Part], frame: FrameNumber, line: &[Point]) -> usize {
-    let inside = |body: &Body| line.iter().filter(|p| polygon::contains(&body.outline, **p)).count();
-    let depth = |body: &Body| parts[body.part].depth_at(frame);
-    let best = (0..bodies.len()).max_by(|&a, &b| {
-        let (a, b) = (&bodies[a], &bodies[b]);
-        inside(a).cmp(&inside(b)).then(depth(a).total_cmp(&depth(b)))
-    });
-    let middle = polygon::center(line);
-    let away = |k: &usize| polyline::distance(middle, &bodies[*k].outline, true);
-    let nearest = || (0..bodies.len()).min_by(|a, b| away(a).total_cmp(&away(b)));
-    best.filter(|&k| inside(&bodies[k]) > 0).or_else(nearest).unwrap_or(0)
 }

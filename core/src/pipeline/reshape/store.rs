@@ -4,6 +4,7 @@
 //! in-betweens. Depths that differ from the part's depth are stored by frame.
 
 use super::bodies::{Body, Moved};
+use super::lines::LooseLine;
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::{DrawnBetween, DrawnStroke};
@@ -13,12 +14,14 @@ use std::collections::BTreeMap;
 /// Points on every frame, by number of the stroke or open contour (contours after all strokes).
 type Lines = BTreeMap<usize, Vec<Vec<Point>>>;
 
-/// Puts the complete result into the document. `bodies` and `moved` have the same order. `strokes` are those of the
+/// Puts the complete result into the document. `bodies` and `moved` have the same order. `loose` are the lines that go
+/// with no body, with their points on every frame. `strokes` are those of the
 /// drawing at rest. `depths` are by part and frame of `footage`, which becomes the document's footage.
 pub(super) fn store(
     document: &mut Document,
     footage: Footage,
     (bodies, moved): (&[Body], &[Moved]),
+    loose: &[(LooseLine, Vec<Vec<Point>>)],
     strokes: &[DrawnStroke],
     depths: &[Vec<f64>],
 ) {
@@ -29,6 +32,7 @@ pub(super) fn store(
     for (body, moved) in bodies.iter().zip(moved) {
         put_body(&mut parts[body.part], body, moved, &frames, &mut lines);
     }
+    lines.extend(loose.iter().map(|(line, of_frames)| (line.number, of_frames.clone())));
     for (number, of_frames) in lines.range(strokes.len()..) {
         let part = &mut parts[open[number - strokes.len()]];
         part.curves.clear();

@@ -26,7 +26,7 @@ fn limb(from: &str, to: &str, part: &str, places: [f64; 4], more: &str) -> Strin
 
 /// Rings have their points from the top right down and from the bottom left up: 0 and 7 are the top, 3 and 4 the
 /// bottom.
-fn figure(fields: &str) -> Document {
+pub(super) fn figure(fields: &str) -> Document {
     let part = |name: &str, depth: f64, ring: String| {
         format!(r#"{{"name": "{name}", "closed": true, "depth": {depth}, "keys": {{"0": {ring}}}}}"#)
     };
@@ -54,7 +54,7 @@ fn figure(fields: &str) -> Document {
 }
 
 /// The figure's own posture, its arm raised by 30° a frame, its way 5 px a frame.
-fn waving(document: &Document, frames: usize) -> Clip {
+pub(super) fn waving(document: &Document, frames: usize) -> Clip {
     let job = ClipJob { character: "a".into(), motion: "wave".into(), frames: Some(0..=0) };
     let rest = clip(document, &job).unwrap().clips.clips[0].postures[0].clone();
     let at = |frame: usize| -> Vec<Point> {
@@ -68,7 +68,7 @@ fn waving(document: &Document, frames: usize) -> Clip {
     Clip::of(Template::human(), "b", "wave", (0..frames).map(at).collect())
 }
 
-fn job(clip: &Clip) -> ReshapeJob<'_> {
+pub(super) fn job(clip: &Clip) -> ReshapeJob<'_> {
     ReshapeJob {
         clip,
         fps: 12.0,
@@ -79,6 +79,20 @@ fn job(clip: &Clip) -> ReshapeJob<'_> {
         options: Options::default(),
         points: BTreeMap::new(),
     }
+}
+
+/// Adds a box without a limb.
+pub(super) fn add_part(document: &mut Document, name: &str, low: Point, high: Point, depth: f64) {
+    let ring = ring(0.5 * (low.x + high.x), low.y, high.y, 0.5 * (high.x - low.x));
+    let points: Vec<[f64; 2]> = serde_json::from_str(&ring).unwrap();
+    let keys = BTreeMap::from([(0, points.into_iter().map(Point::from).collect())]);
+    document.scene.parts.push(Part { name: name.into(), closed: true, depth, keys, ..Part::default() });
+}
+
+/// Adds an open contour.
+pub(super) fn add_line(document: &mut Document, name: &str, points: &[Point]) {
+    let keys = BTreeMap::from([(0, points.to_vec())]);
+    document.scene.parts.push(Part { name: name.into(), closed: false, keys, ..Part::default() });
 }
 
 #[test]
@@ -272,17 +286,11 @@ fn the_own_clip_on_the_own_drawing_is_the_identity() {
 #[test]
 fn parts_away_from_the_figure_stay_and_shadows_follow_the_ground() {
     let mut document = figure("");
-    let like = |document: &mut Document, name: &str, low: Point, high: Point| {
-        let ring = ring(0.5 * (low.x + high.x), low.y, high.y, 0.5 * (high.x - low.x));
-        let points: Vec<[f64; 2]> = serde_json::from_str(&ring).unwrap();
-        let keys = BTreeMap::from([(0, points.into_iter().map(Point::from).collect())]);
-        document.scene.parts.push(Part { name: name.into(), closed: true, keys, ..Part::default() });
-    };
-    like(&mut document, "shadow", Point::new(28.0, 105.0), Point::new(76.0, 109.0));
-    like(&mut document, "house", Point::new(-200.0, -200.0), Point::new(400.0, 200.0));
-    like(&mut document, "ball", Point::new(68.0, 88.0), Point::new(78.0, 98.0));
-    like(&mut document, "star", Point::new(300.0, 10.0), Point::new(310.0, 20.0));
-    like(&mut document, "button", Point::new(45.0, 30.0), Point::new(49.0, 34.0));
+    add_part(&mut document, "shadow", Point::new(28.0, 105.0), Point::new(76.0, 109.0), 0.0);
+    add_part(&mut document, "house", Point::new(-200.0, -200.0), Point::new(400.0, 200.0), 0.0);
+    add_part(&mut document, "ball", Point::new(68.0, 88.0), Point::new(78.0, 98.0), 0.0);
+    add_part(&mut document, "star", Point::new(300.0, 10.0), Point::new(310.0, 20.0), 0.0);
+    add_part(&mut document, "button", Point::new(45.0, 30.0), Point::new(49.0, 34.0), 0.0);
     let mut motion = waving(&document, 4);
     for (frame, posture) in motion.postures.iter_mut().enumerate() {
         posture.iter_mut().for_each(|p| p.y -= 6.0 * frame as f64);
@@ -309,11 +317,16 @@ fn parts_away_from_the_figure_stay_and_shadows_follow_the_ground() {
     let told = reshape(&mut asked, &job(&motion), &Silent).unwrap();
     assert_eq!(told.given.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["house", "ball", "button"]);
     assert_eq!(asked.scene.parts[5].tracks[&3], before.scene.parts[5].keys[&0]);
-    set.follows = vec![("star".into(), Follow::Part("house".into()))];
-    let mut wrong = before.clone();
-    wrong.set_limbs(&set);
-    let error = reshape(&mut wrong, &job(&motion), &Silent).unwrap_err().to_string();
-    assert_eq!(error, "follows.\"star\": found part \"house\", expected a closed part that a limb carries");
+    let mut said = |follows: Vec<(&str, &str)>| {
+        set.follows = follows.into_iter().map(|(part, of)| (part.into(), Follow::Part(of.into()))).collect();
+        let mut wrong = before.clone();
+        wrong.set_limbs(&set);
+        reshape(&mut wrong, &job(&motion), &Silent).unwrap_err().to_string()
+    };
+    let expected = "expected a closed part that does not itself follow \"star\"";
+    assert_eq!(said(vec![("star", "seam")]), format!("follows.\"star\": found part \"seam\", {expected}"));
+    let round = said(vec![("star", "ball"), ("ball", "star")]);
+    assert!(round.contains("expected a closed part that does not itself follow"), "{round}");
 }
 
 #[test]
