@@ -44,6 +44,7 @@
 pub mod arap;
 pub mod capture;
 pub mod contacts;
+mod cycle;
 pub mod depth;
 pub mod examples;
 pub mod facing;

@@ -20,6 +20,9 @@ use std::ops::Range;
 pub(crate) const FADE: usize = 3;
 /// A heel comes off until the ankle has risen by this share of the way from ankle to toe.
 const TOE: f64 = 0.8;
+/// After a contact the ankle may be lower than it stood by this share of that way: the frame on which a foot leaves the ground is found
+/// to a frame.
+const FLAT: f64 = 0.1;
 
 /// The turns of a foot on all frames. `leg` are the key points of its leg; `runs` are its contacts with the ground, which is at
 /// `ground`. `drawn` is empty, or has for each frame the turn where the document shows it.
@@ -67,13 +70,13 @@ fn roll(foot: &Foot, after: impl Iterator<Item = f64>, ground: f64) -> Vec<f64> 
     let (toe, stood) = (foot.toe(), ground - foot.depth(foot.level));
     let length = toe.x.abs();
     let mut found: Vec<f64> = Vec::new();
-    let mut before = 0.0;
+    let mut before = -FLAT * length;
     for ankle in after {
         let risen = stood - ankle;
         if !(risen > before && risen < TOE * length) {
             break;
         }
-        found.push(foot.level + toe.x.signum() * (risen / length).asin());
+        found.push(foot.level + toe.x.signum() * (risen.max(0.0) / length).asin());
         before = risen;
     }
     found

@@ -4,7 +4,7 @@
 //!
 //! 1. **The pitch of shoes** (the module `pitch`).
 //! 2. **The height of the pelvis.** On each frame with a foot on the ground, the lowest sole touches the ground line.
-//!    In the air the shift is interpolated, so a jump keeps its height. No sole is ever below the ground. A clip with a
+//!    In the air the shift is interpolated, so a jump keeps its height. No sole is below the ground in the end. A clip with a
 //!    fixed pelvis gets back the rise and fall of its steps.
 //! 3. **The way of the pelvis.** A standing foot moves as the ground does. The pelvis takes up what is common to the
 //!    feet that stand, as in `rototoon-style`.
@@ -12,12 +12,19 @@
 //!
 //! The order is 1 to 4, twice, since a leg that moves turns its shin.
 //!
+//! **Feet that stand bear the figure.** In step 2 only they count where there are some. A swinging foot whose toe would drag on the ground is
+//! lifted by its leg instead: before a clip's first frame nothing is known, so the pitch of a foot that has just left the ground may be
+//! wrong there, and must not lift the whole figure off its standing foot.
+//!
+//! **Cycles** are worked on as if they went on around ([`super::cycle`]).
+//!
 //! **The drawing's own motion** has its pelvis in the right place already. Steps 1 and 4, and step 3 for the legs, are made there, for shoes, on the frames that
 //! the document does not show ([`stand_own`]).
 //!
 //! Limits: the ground is a level line. A leg that would have to be longer stays straight and hangs above the ground.
 
 use super::contacts::{Contacts, quantile};
+use super::cycle::Cycle;
 use super::foot::{Foot, foot_of};
 use super::pitch::{FADE, pitches};
 use super::reach::reach;
@@ -68,6 +75,30 @@ pub fn stand(
     feet: &[Foot],
     ground: f64,
 ) -> Vec<Vec<f64>> {
+    let Some(cycle) = Cycle::of(template, clip) else {
+        return stand_once(template, postures, (clip, size), feet, ground);
+    };
+    let before = cycle.walked(postures, size);
+    let mut made = before.clone();
+    let turns = stand_once(template, &mut made, (&cycle.walked(clip, 1.0), size), feet, ground);
+    corrected(postures, cycle.middle(&before), cycle.middle(&made));
+    turns.iter().map(|turns| cycle.middle(turns).to_vec()).collect()
+}
+
+/// Adds what was done to the postures `before`. What was not touched stays as it is to the last digit.
+fn corrected(postures: &mut [Vec<Point>], before: &[Vec<Point>], made: &[Vec<Point>]) {
+    let pairs = postures.iter_mut().flatten().zip(before.iter().flatten().zip(made.iter().flatten()));
+    pairs.for_each(|(p, (before, made))| *p += *made - *before);
+}
+
+/// [`stand`] of a clip with ends.
+fn stand_once(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    (clip, size): (&[Vec<Point>], f64),
+    feet: &[Foot],
+    ground: f64,
+) -> Vec<Vec<f64>> {
     let legs = template.legs();
     let contacts = Contacts::of(&legs, clip);
     let on = Ground { legs: &legs, feet, contacts: &contacts, y: ground, drawn: &[] };
@@ -91,6 +122,29 @@ pub fn stand(
 /// ground is where feet stand on those frames, else where they stand in the motion; without contacts nothing is below it. Returns
 /// the turns and the ground line's y.
 pub fn stand_own(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    feet: &[Foot],
+    drawn: &[Option<Vec<f64>>],
+) -> (Vec<Vec<f64>>, Option<f64>) {
+    let Some(cycle) = Cycle::of(template, postures).filter(|_| drawn.len() == postures.len()) else {
+        return own_once(template, postures, feet, drawn);
+    };
+    let before = cycle.walked(postures, 1.0);
+    let mut made = before.clone();
+    // The last frame is the first again: what the document shows of one of them, it shows of both.
+    let mut round = drawn.to_vec();
+    if let [first, .., last] = &mut round[..] {
+        *first = first.take().or_else(|| last.clone());
+    }
+    let shown = cycle.repeated(&round);
+    let (turns, ground) = own_once(template, &mut made, feet, &shown);
+    corrected(postures, cycle.middle(&before), cycle.middle(&made));
+    (turns.iter().map(|turns| cycle.middle(turns).to_vec()).collect(), ground)
+}
+
+/// [`stand_own`] of a motion with ends.
+fn own_once(
     template: &Template,
     postures: &mut [Vec<Point>],
     feet: &[Foot],
@@ -165,14 +219,15 @@ fn set_heights(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
         };
         on.feet.iter().zip(turns).filter_map(of).fold(f64::INFINITY, f64::min)
     };
-    // With all feet drawn the lowest one bears the figure. Some of them do so only while they stand.
+    // Feet that stand bear the figure. Where none does, the lowest one of all feet bears it, if all are drawn.
     let all = (0..on.legs.len()).all(|leg| on.feet.iter().any(|foot| foot.leg == leg));
+    let stands = |t: usize| on.feet.iter().any(|foot| on.contacts.stands[foot.leg][t]);
     let known: Vec<(usize, f64)> = (0..n)
         .filter(|&t| !on.contacts.air[t])
-        .map(|t| (t, above(t, !all)))
+        .map(|t| (t, above(t, stands(t) || !all)))
         .filter(|(_, shift)| shift.is_finite())
         .collect();
-    let shifts: Vec<f64> = (0..n).map(|t| between(&known, t).min(above(t, false))).collect();
+    let shifts: Vec<f64> = (0..n).map(|t| between(&known, t).min(above(t, stands(t)))).collect();
     for (posture, shift) in postures.iter_mut().zip(shifts) {
         if shift.is_finite() {
             posture.iter_mut().for_each(|p| p.y += shift);
@@ -299,6 +354,63 @@ mod tests {
                 assert!(run.clone().all(|t| (x(t) - x(run.start)).abs() < 0.5), "the foot slips");
             }
         }
+    }
+
+    #[test]
+    fn a_cycle_goes_round_on_other_legs_and_its_first_foot_stands() {
+        for way in [true, false] {
+            let clip = walk(25, way);
+            // Fitted to a figure with shorter thighs.
+            let shorter = |p: &Vec<Point>| {
+                let mut p = p.clone();
+                for leg in LEGS {
+                    let shift = (p[leg[0]] - p[leg[1]]) * 0.3;
+                    leg[1..].iter().for_each(|&k| p[k] += shift);
+                }
+                p
+            };
+            let mut made: Vec<Vec<Point>> = clip.iter().map(shorter).collect();
+            let feet = feet(Some(1.0));
+            let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 60.0);
+            let step = made[24][0] - made[0][0];
+            assert!(step.y.abs() < 1e-9, "the body rises by {} px at the seam", step.y);
+            for (k, (a, b)) in made[0].iter().zip(&made[24]).enumerate() {
+                assert!((*a + step).distance(*b) < 1e-6, "key point {k}: {a} {b}");
+            }
+            assert!(turns.iter().all(|turns| (turns[0] - turns[24]).abs() < 1e-9), "{turns:?}");
+            let stands = |t: usize| soles(&made, &feet, &turns, t);
+            assert!(
+                (0..8).all(|t| stands(t).iter().any(|y| (y - 60.0).abs() < 0.5)),
+                "a foot stands from the first frame on"
+            );
+        }
+    }
+
+    #[test]
+    fn a_dragging_toe_does_not_lift_the_figure_off_its_standing_foot() {
+        // The right foot has just left the ground when the clip begins.
+        let clip: Vec<Vec<Point>> = walk(60, true)[3..].to_vec();
+        let mut made = clip.clone();
+        let feet = feet(Some(1.0));
+        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 8.0);
+        let contacts = human(&clip);
+        for (t, _) in contacts.stands[0].iter().enumerate().filter(|(_, stands)| **stands) {
+            let sole = soles(&made, &feet, &turns, t)[0];
+            assert!((sole - 8.0).abs() < 0.5, "frame {t}: the standing foot is {} px above the ground", 8.0 - sole);
+        }
+        assert!(contacts.stands[0][0] && !contacts.stands[1][0]);
+    }
+
+    #[test]
+    fn the_own_cycle_goes_round() {
+        let clip = walk(25, true);
+        let mut drawn: Vec<Option<Vec<f64>>> = vec![None; 25];
+        drawn[24] = Some(vec![0.0, -0.4]);
+        let (mut made, feet) = (clip.clone(), feet(Some(1.0)));
+        let (turns, _) = stand_own(&Template::human(), &mut made, &feet, &drawn);
+        assert_eq!((&made[24], turns[1][24]), (&clip[24], -0.4), "what is shown stays");
+        let step = clip[24][0] - clip[0][0];
+        assert!(made[0].iter().zip(&made[24]).all(|(a, b)| (*a + step).distance(*b) < 1e-6));
     }
 
     #[test]
