@@ -1,10 +1,13 @@
 //! From contours to a skeleton clip, and translation of a motion into another character's manner.
 
+use super::report::runs;
 use super::{PipelineError, frames_of};
 use crate::project::Document;
 use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
-use crate::scene::{Clip, FrameNumber, Progress};
+use crate::scene::limbs::{Limb, LimbSet};
+use crate::scene::outcome::Outcome;
+use crate::scene::{Clip, FrameNumber, Part, Progress};
 use crate::style::{self, Options, Request, StyleError, Sure};
 use std::ops::RangeInclusive;
 
@@ -29,6 +32,8 @@ pub struct CapturedClip {
     /// Key points that were filled in on some frames because no contour determines them, with the number of these
     /// frames.
     pub guessed: Vec<(String, usize)>,
+    /// In words, which contours that limbs hang on are lost or doubtful, and on which frames of the clip.
+    pub doubts: Vec<String>,
 }
 
 /// Captures a clip from a document's tracked contours and its limbs.
@@ -50,8 +55,30 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
     let captured = capture(&set, &document.scene.parts, frames).map_err(|e| wrong(&e))?;
     let counts = captured.guessed.iter().enumerate().filter(|(_, count)| **count > 0);
     let guessed = counts.map(|(k, count)| (set.template.point_name(k).to_owned(), *count)).collect();
+    let last = captured.first + captured.postures.len() as FrameNumber - 1;
+    let doubts = doubts(&set, &document.scene.parts, captured.first..=last);
     let clip = Clip::of(set.template.clone(), job.character.as_str(), job.motion.as_str(), captured.postures);
-    Ok(CapturedClip { clips: Clips { clips: vec![clip], fps: footage.fps }, first: captured.first, guessed })
+    Ok(CapturedClip { clips: Clips { clips: vec![clip], fps: footage.fps }, first: captured.first, guessed, doubts })
+}
+
+/// Says of each part that limbs hang on where its contours are lost or doubtful.
+fn doubts(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber>) -> Vec<String> {
+    let of = |part: &Part| {
+        let hangs = |limb: &&Limb| {
+            [&limb.start, &limb.end].iter().any(|end| end.points.iter().any(|point| point.part == part.name))
+        };
+        let named =
+            |limb: &Limb| format!("{} to {}", set.template.point_name(limb.from), set.template.point_name(limb.to));
+        let limbs: Vec<String> = set.limbs.iter().filter(hangs).map(named).collect();
+        let within = |all: Vec<FrameNumber>| all.into_iter().filter(|f| frames.contains(f)).collect::<Vec<_>>();
+        let outcome = Outcome::of(part);
+        let found = [("lost", within(outcome.lost)), ("doubtful", within(outcome.doubtful))];
+        let said = found.iter().filter(|(_, frames)| !frames.is_empty());
+        let said: Vec<String> = said.map(|(what, frames)| format!("{what} on {}", runs(frames))).collect();
+        let wrong = !limbs.is_empty() && !said.is_empty();
+        wrong.then(|| format!("part {:?} ({}): {}", part.name, limbs.join(", "), said.join("; ")))
+    };
+    parts.iter().filter_map(of).collect()
 }
 
 /// Re-makes a motion in another character's manner. It runs on the caller's rayon pool; the result does not depend on
