@@ -38,7 +38,7 @@ pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use render::render;
 pub use report::{Counts, PartReport, Report, Weakest};
-pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, reshape};
+pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
 pub use shapeless::nothing_for;
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};

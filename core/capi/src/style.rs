@@ -54,7 +54,9 @@ pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
     let guessed: serde_json::Map<String, Value> =
         made.guessed.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
     let guessed = Value::Object(guessed);
-    Ok(format!(r#"{{"clips": {}, "first": {}, "guessed": {guessed}}}"#, made.clips.text().trim_end(), made.first))
+    let (clips, first, doubts) = (made.clips.text(), made.first, json!(made.doubts));
+    let clips = clips.trim_end();
+    Ok(format!(r#"{{"clips": {clips}, "first": {first}, "guessed": {guessed}, "doubts": {doubts}}}"#))
 }
 
 /// The complete definition of a body that is named or defined.
@@ -232,9 +234,10 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         return Err(Failure::Error(format!("options.sub_keys: found {sub_keys}, expected 0 to {MOST_SUB_KEYS}")));
     }
     let how = puppet::Options { sub_keys, ..puppet::Options::default() };
+    let (clip, rate) = pipeline::at_rate_of(&document.scene.footage, clip, clips.fps);
     let job = ReshapeJob {
-        clip,
-        fps: clips.fps,
+        clip: &clip,
+        fps: document.scene.footage.fps,
         rest: given.rest,
         over: None,
         chains: given.chains.clone(),
@@ -254,12 +257,13 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         let frames = |frames: &Vec<Vec<Point>>| {
             json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())
         };
+        let notes = json!(rate.iter().chain(&made.notes).collect::<Vec<_>>());
         let points: serde_json::Map<String, Value> =
             made.points.iter().map(|(part, f)| (part.clone(), frames(f))).collect();
         let points = Value::Object(points);
         let document = document.to_json();
         Ok(format!(
-            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "still": {still}, "mirrored": {mirrored}, "looks": {looks}, "points": {points}}}"#,
+            r#"{{"document": {}, "given": {given}, "rigid": {rigid}, "still": {still}, "mirrored": {mirrored}, "looks": {looks}, "notes": {notes}, "points": {points}}}"#,
             document.trim_end()
         ))
     })

@@ -15,7 +15,8 @@ use std::ptr::null_mut;
 /// clip, `first` and `last` its first and last frame. The frames may be left out.
 ///
 /// `made` is JSON: `{"clips": a file of clips, "first": frame of the first posture, "guessed": {key point: number of
-/// frames}}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
+/// frames}, "doubts": [text]}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
+/// `doubts` says of each part that limbs hang on where its contours are lost or doubtful.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_capture_clip(
     document: *const u8,
@@ -157,6 +158,8 @@ pub unsafe extern "C" fn rototoon_translate_clip(
 /// - `mirrored`: whether the clip was mirrored.
 /// - `looks`: `{"drawing", "clip"}`, the sides to which they look, "left", "right" or null where it cannot be told. It is null if they did
 ///   not decide whether the clip was mirrored.
+/// - `notes`: what a person should know beside, in words: a clip of another frame rate, which is brought to the document's; parts that go
+///   through the ground; strokes that lie on no part.
 /// - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_reshape(

@@ -10,6 +10,8 @@
 //! - `lines`: the strokes and open contours, with the part on which they lie or on their own
 //! - `loose`: what parts and lines follow that no limb carries
 //! - `store`: the result in the document
+//! - `sunk`: parts that go through the ground
+//! - `rate`: the clip at the document's frame rate
 //!
 //! Marks "in front" and "behind" give the depths of each frame.
 
@@ -19,9 +21,12 @@ mod lines;
 mod loose;
 mod motion;
 mod moves;
+mod rate;
 mod store;
+mod sunk;
 
 use super::PipelineError;
+use super::report::runs;
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
@@ -37,6 +42,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub use crate::reshape::facing::Side;
 pub use loose::Given;
+pub use rate::at_rate_of;
 
 /// Depths are written to a millionth.
 const DEPTH_SCALE: f64 = 1e6;
@@ -110,6 +116,8 @@ pub struct Reshaped {
     /// The sides to which drawing and clip look, where they decided whether the clip was mirrored. None if the job said it, and for
     /// a motion of the drawing itself.
     pub sides: Option<Sides>,
+    /// What a person should know beside, in words: parts that go through the ground, strokes that lie on no part.
+    pub notes: Vec<String>,
     /// By part and frame where the points of [`ReshapeJob::points`] are.
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
@@ -142,7 +150,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let given = bodies.iter().filter_map(|body| Some((body.name.clone(), body.given.clone()?)));
     let given = given.chain(loose.iter().filter_map(|line| Some((line.name.clone()?, line.given.clone()?))));
     let free = loose.iter().filter(|line| line.name.is_none());
-    let free = free.filter_map(|line| Some((line.number, line.given.clone()?)));
+    let free: Vec<(usize, Given)> = free.filter_map(|line| Some((line.number, line.given.clone()?))).collect();
     let points = bodies.iter().zip(&moved).filter(|(body, _)| body.more > 0);
     let points = points.map(|(body, moved)| {
         let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
@@ -150,7 +158,11 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     });
     let report = Reshaped {
         given: given.collect(),
-        strokes: free.collect(),
+        notes: sunk::notes((&bodies, &moved), parts, &motion, footage.first)
+            .into_iter()
+            .chain(of_strokes(&free))
+            .collect(),
+        strokes: free,
         rigid,
         still: motion.still.clone(),
         mirrored: motion.mirrored,
@@ -163,6 +175,23 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths);
     document.set_limbs(&placed);
     Ok(report)
+}
+
+/// Says which strokes lie on no part.
+fn of_strokes(free: &[(usize, Given)]) -> Vec<String> {
+    let mut by_given: Vec<(&Given, Vec<FrameNumber>)> = Vec::new();
+    for (number, given) in free {
+        let number = FrameNumber::try_from(*number).unwrap_or(FrameNumber::MAX);
+        match by_given.iter_mut().find(|(known, _)| *known == given) {
+            Some((_, numbers)) => numbers.push(number),
+            None => by_given.push((given, vec![number])),
+        }
+    }
+    let said = |(given, numbers): &(&Given, Vec<FrameNumber>)| match numbers[..] {
+        [one] => format!("stroke {one} of the drawing: it lies on no part, so {given}"),
+        _ => format!("strokes {} of the drawing: they lie on no part; of each of them: {given}", runs(numbers)),
+    };
+    by_given.iter().map(said).collect()
 }
 
 /// Gives the bodies the points that are asked for.

@@ -105,11 +105,17 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let rest = given.get_one::<FrameNumber>("rest").copied();
     let chains = given.get_many::<(String, String)>("chain").into_iter().flatten().cloned().collect();
     let mirror = Mirror::from_id(arguments::choice(given, "mirror")).unwrap_or_default();
-    let job = ReshapeJob { clip, fps: clips.fps, rest, over, chains, mirror, options, points: Default::default() };
+    let footage = over.as_ref().unwrap_or(&document.scene.footage);
+    let (clip, rate) = pipeline::at_rate_of(footage, clip, clips.fps);
+    let fps = footage.fps;
+    let job = ReshapeJob { clip: &clip, fps, rest, over, chains, mirror, options, points: Default::default() };
     let (document, made) = progress::run(arguments::threads(given), |bar| {
         let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| failed(error, from))?;
         Ok((document, made))
     })?;
+    if let Some(text) = rate {
+        line("note", &format!("{}: {text}", from.display()));
+    }
     report(&made, from);
     project::save(document, from, to)
 }
@@ -129,6 +135,7 @@ fn report(made: &Reshaped, from: &Path) {
     for (part, given) in &made.given {
         say("warning", &format!("part {part:?}: no limb carries it, so {given}"));
     }
+    made.notes.iter().for_each(|text| say("warning", text));
     for chain in &made.still {
         say("warning", &format!("chain {chain:?}: no chain of the clip belongs to it, so it stays still (--chain)"));
     }
