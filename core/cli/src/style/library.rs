@@ -37,7 +37,7 @@ pub fn command() -> Command {
                 .action(ArgAction::SetTrue),
         );
     let list = Command::new("list")
-        .about("Lists clips: character, motion, frames, frames per second, file, source")
+        .about("Lists the clips that can be used: character, motion, frames, frames per second, file, source. Damaged and missing files give warnings")
         .arg(folder())
         .arg(word("character", "Only characters whose names contain this word"))
         .arg(word("motion", "Only motions whose names contain this word"));
@@ -61,8 +61,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if what == "add" {
         return add(&mut library, given);
     }
+    // The index alone does not tell which files are there and whole.
+    let asked = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
+    let (found, troubles) = library.checked(asked);
+    troubles.iter().for_each(|trouble| line("warning", &trouble.to_string()));
     let mut out = std::io::stdout().lock();
-    let found = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
     for e in found {
         // A closed standard output, such as of `head`, is no error.
         let fields = format!("{}\t{}\t{}\t{}\t{}\t{}", e.character, e.motion, e.frames, e.fps, e.file, e.source);

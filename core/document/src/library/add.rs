@@ -120,11 +120,7 @@ impl Library {
 
     /// A free file name made of letters and digits of both labels, with a number if necessary.
     fn free_name(&self, clip: &Clip) -> String {
-        let plain = |text: &str| -> String {
-            let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
-            text.chars().take(MOST_LETTERS).map(plain).collect()
-        };
-        let stem = format!("{}-{}", plain(&clip.character), plain(&clip.motion));
+        let stem = stem(clip);
         // Some systems do not tell large letters from small ones.
         let listed = |name: &str| self.index.entries.iter().any(|e| e.file.eq_ignore_ascii_case(name));
         let taken = |name: &String| listed(name) || is_there(&self.folder.join(name));
@@ -147,6 +143,28 @@ fn once<'a>(clips: impl Iterator<Item = &'a Clip>) -> Result<(), AddError> {
         }
     }
     Ok(())
+}
+
+/// The name of a clip's file without its ending: letters and digits of both labels.
+fn stem(clip: &Clip) -> String {
+    let plain = |text: &str| -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
+        text.chars().take(MOST_LETTERS).map(plain).collect()
+    };
+    format!("{}-{}", plain(&clip.character), plain(&clip.motion))
+}
+
+/// How far a file's name is from the one that the library gives to a clip: 0 for that name, 1 for that name with a number, 2 for
+/// another one, such as that of a copy which a program made that keeps folders the same.
+pub(super) fn strangeness(file: &str, clip: &Clip) -> usize {
+    let rest = file.strip_suffix(ENDING).and_then(|name| name.strip_prefix(&stem(clip)));
+    let number =
+        |rest: &str| rest.strip_prefix('-').is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()));
+    match rest {
+        Some("") => 0,
+        Some(rest) if number(rest) => 1,
+        _ => 2,
+    }
 }
 
 /// Whether something has this name, be it a link that leads nowhere.

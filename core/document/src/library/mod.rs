@@ -106,6 +106,23 @@ impl Library {
         self.read_all(entries, |clip, own| clip.at_rate(own, fps))
     }
 
+    /// Some entries as their files are, without those whose files cannot be used. These are reported.
+    pub fn checked<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Entry>, Vec<Trouble>) {
+        let (mut good, mut troubles) = (Vec::new(), Vec::new());
+        let entries: Vec<&Entry> = entries.collect();
+        let read: Vec<_> = entries.par_iter().map(|entry| one_clip(&self.folder.join(&entry.file))).collect();
+        for (entry, result) in entries.into_iter().zip(read) {
+            match result {
+                Ok((clip, fps)) => {
+                    let (frames, Clip { character, motion, .. }) = (clip.postures.len(), clip);
+                    good.push(Entry { character, motion, frames, fps, ..entry.clone() });
+                }
+                Err(trouble) => troubles.push(trouble),
+            }
+        }
+        (good, troubles)
+    }
+
     fn read_all<'a>(
         &self,
         entries: impl Iterator<Item = &'a Entry>,
@@ -131,7 +148,7 @@ impl Library {
         runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied()).unwrap_or(25.0)
     }
 
-    /// Adds the clip files that no entry names, in the order of their names.
+    /// Adds the clip files that no entry names, in the order of their names, those with a name that the library gives first.
     fn find_files(&mut self) {
         let Ok(listed) = fs::read_dir(&self.folder) else { return };
         let known: BTreeSet<&str> = self.index.entries.iter().map(|entry| entry.file.as_str()).collect();
@@ -142,14 +159,16 @@ impl Library {
         names.sort();
         let paths: Vec<PathBuf> = names.iter().map(|name| self.folder.join(name)).collect();
         let read: Vec<_> = paths.par_iter().map(|path| one_clip(path)).collect();
+        let mut found: Vec<(String, PathBuf, Clip, f64)> = Vec::new();
         for ((file, path), result) in names.into_iter().zip(paths).zip(read) {
-            let (clip, fps) = match result {
-                Ok(found) => found,
-                Err(trouble) => {
-                    self.index.troubles.push(trouble);
-                    continue;
-                }
-            };
+            match result {
+                Ok((clip, fps)) => found.push((file, path, clip, fps)),
+                Err(trouble) => self.index.troubles.push(trouble),
+            }
+        }
+        // Of files with one clip the one with the library's own name counts, whatever copies are called.
+        found.sort_by_key(|(file, _, clip, _)| add::strangeness(file, clip));
+        for (file, path, clip, fps) in found {
             let Clip { character, motion, postures, .. } = clip;
             match self.index.entries.iter().find(|entry| entry.character == character && entry.motion == motion) {
                 Some(first) => {

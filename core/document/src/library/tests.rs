@@ -76,6 +76,46 @@ fn files_put_into_the_folder_are_found_and_twins_reported() {
 }
 
 #[test]
+fn a_copy_under_a_strange_name_does_not_win_over_the_original() {
+    let (folder, library) = filled();
+    let folder = folder.path().join("clips");
+    let own = library.entries()[0].file.clone();
+    for copy in ["ann-walk (conflicted copy).clip.json", "ann-walk-2.clip.json", "aa.clip.json"] {
+        Clips { clips: vec![clip("Ann", "walk", 9)], fps: 12.0 }.save(&folder.join(copy)).unwrap();
+    }
+    let used =
+        |library: &Library| library.search("ann", "walk").map(|e| (e.file.clone(), e.frames)).collect::<Vec<_>>();
+    assert_eq!(used(&Library::open(&folder)), [(own.clone(), 3)]);
+    fs::write(folder.join(INDEX), "[").unwrap();
+    let rebuilt = Library::open(&folder);
+    assert_eq!(used(&rebuilt), [(own.clone(), 3)]);
+    assert_eq!(
+        rebuilt.troubles().iter().filter(|t| matches!(t, Trouble::Twice { first, .. } if *first == own)).count(),
+        3
+    );
+    // Without the original the one with a number is the library's own.
+    fs::remove_file(folder.join(&own)).unwrap();
+    assert_eq!(used(&Library::open(&folder)), [("ann-walk-2.clip.json".to_owned(), 9)]);
+}
+
+#[test]
+fn entries_without_a_usable_file_are_reported() {
+    let (folder, library) = filled();
+    let folder = folder.path().join("clips");
+    fs::write(folder.join(&library.entries()[0].file), "{").unwrap();
+    fs::remove_file(folder.join(&library.entries()[1].file)).unwrap();
+    Clips { clips: vec![clip("Bo/b", "walk", 7)], fps: 12.0 }.save(&folder.join(&library.entries()[2].file)).unwrap();
+    let library = Library::open(&folder);
+    let (good, troubles) = library.checked(library.entries().iter());
+    assert_eq!(good.iter().map(|e| (e.motion.as_str(), e.frames, e.fps)).collect::<Vec<_>>(), [("walk", 7, 12.0)]);
+    let said: Vec<String> = troubles.iter().map(ToString::to_string).collect();
+    assert!(
+        said.len() == 2 && said[0].contains("ann-walk.clip.json") && said[1].contains("ann-run.clip.json"),
+        "{said:?}"
+    );
+}
+
+#[test]
 fn clips_of_several_frame_rates_are_read_at_one() {
     let folder = tempfile::tempdir().unwrap();
     let mut library = Library::open(folder.path());
