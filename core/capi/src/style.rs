@@ -152,6 +152,8 @@ struct TranslateOptions {
     #[serde(default)]
     keys: Option<Value>,
     #[serde(default)]
+    notes: bool,
+    #[serde(default)]
     threads: usize,
 }
 
@@ -198,7 +200,13 @@ pub fn translate(clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Fai
     };
     let request = Request { style: &given.style, motion: &given.motion, content: &given.content, keys: &keys };
     run(given.threads, go_on, |progress| {
-        Ok(pipeline::translate(&clips, &request, &how, progress).map_err(failed)?.text())
+        let (made, grounds) = pipeline::translate_and_judge(&clips, &request, &how, progress).map_err(failed)?;
+        let text = made.text();
+        Ok(if given.notes {
+            format!(r#"{{"clips": {}, "notes": {}}}"#, text.trim_end(), json!(grounds.notes()))
+        } else {
+            text
+        })
     })
 }
 

@@ -104,11 +104,12 @@ pub unsafe extern "C" fn rototoon_import_motion(
 ///
 /// - `preset`: the method.
 /// - `timing`: whose timing the result has, "content" or "style".
-/// - `strength`: a number from 0 to 3, the factor on the change that the style makes.
+/// - `strength`: a number from 0 to 3, the factor on the change that the style makes. With 0 the result is the content's own motion.
 /// - `limb_lengths`: whether limbs keep within the lengths of the style's clips.
 /// - `contacts`: whether feet that stand in the content's clip stay where they stand.
 /// - `keys`: drawn poses, in the form of a file of key poses.
 /// - `threads`: number of threads, 0 for one per core.
+/// - `notes`: true to get `{"clips", "notes": [text]}`, with what a person should know about the result.
 ///
 /// `made` is a file of clips with one clip.
 #[unsafe(no_mangle)]

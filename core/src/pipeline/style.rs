@@ -8,7 +8,7 @@ use crate::reshape::capture::capture;
 use crate::scene::limbs::{Limb, LimbSet};
 use crate::scene::outcome::Outcome;
 use crate::scene::{Clip, FrameNumber, Part, Progress};
-use crate::style::{self, Options, Request, StyleError, Sure};
+use crate::style::{self, Grounds, Options, Request, StyleError};
 use std::ops::RangeInclusive;
 
 /// The clip to make of a document.
@@ -96,7 +96,7 @@ pub fn translate(
     translate_and_judge(clips, request, options, progress).map(|(made, _)| made)
 }
 
-/// Like [`translate`], and says how sure the result is where the library tells.
+/// Like [`translate`], and says what the result rests on.
 ///
 /// # Errors
 ///
@@ -106,10 +106,10 @@ pub fn translate_and_judge(
     request: &Request,
     options: &Options,
     progress: &dyn Progress,
-) -> Result<(Clips, Option<Sure>), PipelineError> {
+) -> Result<(Clips, Grounds), PipelineError> {
     let made = style::translate_and_judge(&clips.clips, request, options, progress);
-    let (made, sure) = made.map_err(failed)?;
-    Ok((Clips { clips: vec![made], fps: clips.fps }, sure))
+    let (made, grounds) = made.map_err(failed)?;
+    Ok((Clips { clips: vec![made], fps: clips.fps }, grounds))
 }
 
 /// A failed translation. What the request asks of clips that do not have it is the fault of an option.

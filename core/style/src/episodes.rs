@@ -28,7 +28,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const OFFSET: [f64; 3] = [1.0, 0.5, 0.0];
 const CONTENT: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Fewest characters whose episodes are evidence.
-const LEAST: usize = 3;
+pub(super) const LEAST: usize = 3;
 /// Most episodes.
 const MOST: usize = 60;
 /// Most multiplications.

@@ -30,20 +30,36 @@ const FADE: usize = 4;
 
 /// Keeps limbs within the range of lengths that the postures `own` show. The frames in `held` stay unchanged.
 pub fn keep_lengths(postures: &mut [Posture], own: &[Posture], held: &[usize]) {
-    if own.is_empty() {
-        return;
+    let Some(range) = ranges(own) else { return };
+    for (frame, posture) in postures.iter_mut().enumerate() {
+        if !held.contains(&frame) {
+            (0..ROUNDS).for_each(|_| constrain(posture, &range));
+        }
     }
+}
+
+/// Gives limbs lengths within the range that the postures `own` show. Each keeps its direction, and the pelvis stays.
+pub fn take_lengths(postures: &mut [Posture], own: &[Posture]) {
+    let Some(range) = ranges(own) else { return };
+    for posture in postures {
+        let before = *posture;
+        for k in 1..COUNT {
+            let way = before[k] - before[PARENTS[k]];
+            let (least, most) = range[k - 1];
+            posture[k] = posture[PARENTS[k]] + way.normalize_or_zero() * way.length().clamp(least, most);
+        }
+    }
+}
+
+/// The range of each limb's lengths in postures; `None` without any.
+fn ranges(own: &[Posture]) -> Option<[(f64, f64); LIMBS]> {
     let mut range = [(f64::INFINITY, 0.0f64); LIMBS];
     for posture in own {
         for (range, length) in range.iter_mut().zip(limb_lengths(posture)) {
             *range = (range.0.min(length), range.1.max(length));
         }
     }
-    for (frame, posture) in postures.iter_mut().enumerate() {
-        if !held.contains(&frame) {
-            (0..ROUNDS).for_each(|_| constrain(posture, &range));
-        }
-    }
+    (!own.is_empty()).then_some(range)
 }
 
 /// One Gauss–Newton step towards limbs within their ranges.

@@ -7,7 +7,7 @@
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - `stance`, `moving`: the posture that is held and the movement, each a process of its own; `likeness`: which characters are alike
 //! - `distinct`: a result that is told apart from other characters
-//! - `episodes`: how far few clips of a style are to be trusted ([`Sure`])
+//! - `episodes`: how far few clips of a style are to be trusted ([`Sure`]); `grounds`: what a result rests on, in words
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
 //! - [`factorisation`]: non-negative style factorisation (Liang et al. 2012)
 //! - [`liang2012`]: translation with it
@@ -71,6 +71,7 @@ pub mod factorisation;
 pub mod finish;
 pub mod gaussian;
 mod grid;
+mod grounds;
 mod kernels;
 mod key_pose;
 pub mod liang2012;
@@ -79,6 +80,7 @@ mod moving;
 mod stance;
 
 pub use episodes::Sure;
+pub use grounds::Grounds;
 
 use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
@@ -157,7 +159,8 @@ pub struct Options {
     pub preset: Preset,
     /// Whose timing.
     pub pace: Pace,
-    /// Factor on what the style adds to the motion: 1 the most probable, more for a manner that is laid on thicker.
+    /// Factor on what the style adds to the motion: 0 the content's own motion, 1 the most probable result, more for a manner that is
+    /// laid on thicker.
     ///
     /// The most probable result is drawn towards the mean of all characters as far as the style is uncertain. A tenth
     /// more goes away from the mean by a tenth of the distance, and by a tenth from the nearest clip of another character. It
@@ -298,8 +301,8 @@ pub fn translate(
     translate_and_judge(clips, request, options, progress).map(|(clip, _)| clip)
 }
 
-/// Like [`translate`], and says how sure the result is, if the preset is [`Preset::Rototoon`] and the library has enough
-/// other characters to tell.
+/// Like [`translate`], and says what the result rests on: how sure it is, if the preset is [`Preset::Rototoon`] and the library has
+/// enough other characters to tell.
 ///
 /// # Errors
 ///
@@ -309,18 +312,21 @@ pub fn translate_and_judge(
     request: &Request,
     options: &Options,
     progress: &dyn Progress,
-) -> Result<(Clip, Option<Sure>), StyleError> {
+) -> Result<(Clip, Grounds), StyleError> {
     progress.report(STEP, 0.0)?;
     let clips = &human_clips(clips, request)?[..];
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
+    let mut grounds = Grounds::new(&grid, request, options);
     let mut made = match options.preset {
-        Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength, progress)?,
+        Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength.max(1.0), progress)?,
         Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric, options.rank),
         Preset::BilinearSymmetric => bilinear::predict(&grid, &keys, bilinear::Model::Symmetric, options.rank),
         Preset::Liang2012 => liang2012::predict(&grid, &keys, options.rank),
     };
     progress.report(STEP, 0.9)?;
+    grounds.sure = made.sure;
+    towards_content(&mut made, &grid, grounds.share(), options.keep_lengths);
     meet(&mut made, &keys);
     let mut postures: Vec<Posture> = made.rows.iter().map(grid::posture).collect();
     if options.keep_lengths {
@@ -341,7 +347,20 @@ pub fn translate_and_judge(
         align::change_pace(&mut clip, align::pace(clips, request));
     }
     progress.report(STEP, 1.0)?;
-    Ok((clip, made.sure))
+    Ok((clip, grounds))
+}
+
+/// Goes back from a prediction to the content's own motion, of which the share 1 has nothing. It has the style's limbs, if these
+/// are kept: its bones keep their directions, so it is the same motion on another body.
+fn towards_content(made: &mut Prediction, grid: &Grid, share: f64, keep_lengths: bool) {
+    let Some(content) = grid.get(grid.content, grid.motion).filter(|_| share < 1.0) else { return };
+    let mut content = content.to_vec();
+    if keep_lengths {
+        finish::take_lengths(&mut content, &own_postures(grid));
+    }
+    for (row, posture) in made.rows.iter_mut().zip(&content) {
+        row.iter_mut().zip(grid::row(posture)).for_each(|(value, own)| *value = own + share * (*value - own));
+    }
 }
 
 /// The clips of humans: a library may hold other bodies, from which nothing is learned.

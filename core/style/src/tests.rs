@@ -178,6 +178,73 @@ fn limbs_keep_the_lengths_of_the_style() {
 }
 
 #[test]
+fn a_strength_of_0_is_the_content_s_own_motion() {
+    // The old one has longer legs and shorter arms.
+    let mut clips = library();
+    for posture in clips.iter_mut().filter(|c| c.character == "old").flat_map(|c| &mut c.postures) {
+        let before = posture.clone();
+        for k in 1..COUNT {
+            let parent = rototoon_base::scene::skeleton::PARENTS[k];
+            let factor = if k > 11 {
+                1.3
+            } else if k > 4 {
+                0.8
+            } else {
+                1.0
+            };
+            posture[k] = posture[parent] + (before[k] - before[parent]) * factor;
+        }
+    }
+    let content = clip(0, 1, 24).human().unwrap();
+    let make = |strength: f64, keep_lengths: bool| {
+        let options = Options { strength, keep_lengths, ..Options::default() };
+        translate_and_judge(&clips, &request(&[]), &options, &Silent).unwrap()
+    };
+    let (made, grounds) = make(0.0, false);
+    for (a, b) in made.human().unwrap().iter().zip(&content) {
+        assert!((0..COUNT).all(|k| (a[k] - a[0]).distance(b[k] - b[0]) < 1e-9));
+    }
+    assert_eq!(grounds.notes(), ["with a strength of 0 the result is the content's own motion"]);
+    let (made, grounds) = make(0.0, true);
+    assert!(grounds.notes()[0].ends_with("own motion, with limbs as long as the style's"));
+    let own = limb_lengths(&human(clips.iter().find(|c| c.character == "old").unwrap(), 0));
+    for (a, b) in made.human().unwrap().iter().zip(&content) {
+        for k in 1..COUNT {
+            let parent = rototoon_base::scene::skeleton::PARENTS[k];
+            let (a, b) = (a[k] - a[parent], b[k] - b[parent]);
+            assert!(a.angle_to(b).abs() < 1e-6, "limb {k} turns by {}", a.angle_to(b));
+            assert!((a.length() - own[k - 1]).abs() < 1e-2, "limb {k}: {} {}", a.length(), own[k - 1]);
+        }
+    }
+    // Half of it is between none and the most probable.
+    let apart = |a: f64, b: f64| apart(&make(a, true).0.postures, &make(b, true).0.postures);
+    let whole = apart(0.0, 1.0);
+    assert!(apart(0.0, 0.5) < 0.65 * whole && apart(0.5, 1.0) < 0.65 * whole);
+}
+
+#[test]
+fn a_library_that_tells_little_says_so() {
+    let notes = |keep: &dyn Fn(&Clip) -> bool, preset: Preset| {
+        let clips: Vec<Clip> = library().into_iter().filter(keep).collect();
+        let made = translate_and_judge(&clips, &request(&[]), &Options { preset, ..Options::default() }, &Silent);
+        let (made, grounds) = made.unwrap();
+        (made, grounds.notes())
+    };
+    // All that is known of the old one is a motion that nobody else shows.
+    let alone = |c: &Clip| if c.character == "old" { c.motion == "bow" } else { c.motion == "run" };
+    let (made, said) = notes(&alone, Preset::Rototoon);
+    let nothing = "no other character shows a motion that \"old\" shows, so nothing is known of the style";
+    assert_eq!(said, [format!("{nothing}: the result is the content's own motion, with limbs as long as the style's")]);
+    assert!(apart(&made.postures, &clip(0, 1, 24).postures) < 0.02, "not the mean of the others");
+    assert_eq!(notes(&alone, Preset::Bilinear).1, [nothing]);
+    // Three characters cannot be rehearsed on.
+    let few = |c: &Clip| ["plain", "old", "shy"].contains(&c.character.as_str());
+    assert!(notes(&few, Preset::Rototoon).1[0].starts_with("the library is too small to rehearse on (3 motions and 3"));
+    let all = notes(&|_| true, Preset::Rototoon).1;
+    assert!(all.len() == 1 && all[0].starts_with("expect "), "{all:?}");
+}
+
+#[test]
 fn the_styles_pace_may_be_taken() {
     let mut clips = library();
     for c in &mut clips {

@@ -10,7 +10,7 @@ use rototoon::project::Inputs;
 use rototoon::project::clips::load_key_poses;
 use rototoon::project::output::check_writable;
 use rototoon::scene::parameters::Stage;
-use rototoon::style::{KeyPose, Options, Pace, Preset, Request, Sure};
+use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
 use std::path::PathBuf;
 
 fn on_or_off(id: &'static str, help: &'static str) -> Arg {
@@ -73,7 +73,7 @@ fn of_method() -> [Arg; 4] {
         Arg::new("strength")
             .long("strength")
             .value_name("NUMBER")
-            .help("Factor on the change that the style makes, 0 to 3 (only of the default preset)")
+            .help("Factor on the change that the style makes, 0 to 3; with 0 the result is the content's own motion (only of the default preset)")
             .default_value("1.1")
             .allow_negative_numbers(true)
             .value_parser(arguments::within(0.0, 3.0)),
@@ -112,27 +112,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         keep_contacts: text("contacts") == "on",
     };
     let request = Request { style: text("style"), motion: text("motion"), content: text("content"), keys: &keys };
-    let (made, sure) = progress::run(arguments::threads(given), |bar| {
+    let (made, grounds) = progress::run(arguments::threads(given), |bar| {
         pipeline::translate_and_judge(&clips, &request, &options, bar).map_err(|error| Failure::of(error, from))
     })?;
-    if let Some(sure) = sure {
-        line("note", &format!("{}: {}", from.display(), said(&sure)));
+    for note in grounds.notes() {
+        line("note", &format!("{}: {note}", from.display()));
     }
     Ok(made.save(to)?)
-}
-
-/// How sure a result is, in words.
-fn said(sure: &Sure) -> String {
-    let (share, rehearsals) = (100.0 * sure.of_copying, sure.episodes);
-    let expected = format!(
-        "expect {share:.0} % of the error of copying, in the posture that is held ({rehearsals} rehearsals on other characters)"
-    );
-    match (sure.offset, sure.content) {
-        (1.0, 0.0) => expected,
-        (offset, content) => format!(
-            "{expected}; the style's clips tell little about this motion, so {:.0} % of the change is made, and {:.0} % of the posture is the content's",
-            100.0 * offset,
-            100.0 * content
-        ),
-    }
 }
