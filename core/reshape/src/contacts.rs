@@ -4,7 +4,8 @@
 //! place. One rule serves all of them. The ground moves by u, the median velocity of the lowest foot: 0 for a clip with
 //! its way, the speed of the walk backwards for the others. A foot stands while
 //!
-//! - it moves nearly as the ground does,
+//! - it moves nearly as the ground does, or just as the ground from the frame before or to the next: on the first and the last frame of
+//!   a contact the other of these ways is that of the swing,
 //! - it is about as low as the lowest of all feet, and
 //! - the figure is not in the air.
 //!
@@ -71,8 +72,12 @@ impl Contacts {
         let slow = (OF_GROUND * ground.abs()).max(OF_SWING * fast).max(OF_LEG * leg);
         let stands = (0..feet.len()).map(|foot| {
             let one = |t: usize| {
-                let apart = (speeds[foot][t] - Point::new(ground, 0.0)).length();
-                !air[t] && apart < slow && feet[foot][t].y > low[t] - LOW * leg
+                let apart = |v: Point| (v - Point::new(ground, 0.0)).length();
+                let step = |a: usize| apart(feet[foot][a + 1] - feet[foot][a]);
+                let beside = [t.checked_sub(1), Some(t).filter(|t| t + 1 < n)];
+                let held = beside.into_iter().flatten().any(|a| step(a) < OF_LEG * leg);
+                let with_ground = held || apart(speeds[foot][t]) < slow;
+                !air[t] && with_ground && feet[foot][t].y > low[t] - LOW * leg
             };
             steady((0..n).map(one).collect())
         });
