@@ -65,6 +65,28 @@ class Captured:
     """The frame of the first posture."""
     guessed: dict[str, int]
     """Key points that had to be filled in, with the number of frames on which no contour shows them."""
+    doubts: list[str]
+    """What a person should know: contours that limbs hang on and that are lost or doubtful, with their frames."""
+
+
+@dataclass(frozen=True)
+class Translated:
+    """A clip that was re-made in another character's style."""
+
+    clips: dict[str, Any]
+    """A file of clips that contains this clip."""
+    notes: list[str]
+    """What a person should know about it: which error to expect, or what the library does not tell."""
+
+
+@dataclass(frozen=True)
+class Stance:
+    """How the body of a clip stands."""
+
+    looks: str | None
+    """The side to which it looks, ``"left"`` or ``"right"``; `None` where it cannot be told."""
+    air: list[bool]
+    """For each frame whether it is in the air."""
 
 
 @dataclass(frozen=True)
@@ -96,6 +118,8 @@ class Reshaped:
     looks: dict[str, str | None] | None
     """The sides to which `drawing` and `clip` look, ``"left"`` or ``"right"``, each `None` where it cannot be told. `None` if they did not
     decide whether the clip was mirrored: the option said it, or it is a motion of the drawing itself."""
+    notes: list[str]
+    """What a person should know beside: a clip of another frame rate, parts that go through the ground, strokes that lie on no part."""
     points: dict[str, list[list[list[float]]]]
     """Places of the points of the option `points`, by part and frame."""
 
@@ -113,6 +137,11 @@ def skeleton(body: str | Mapping[str, Any]) -> Skeleton:
     parents = tuple(points.index(point.get("parent", points[0])) for point in whole["points"])
     chains = tuple(Chain(chain["name"], tuple(chain["points"]), chain["role"]) for chain in whole["chains"])
     return Skeleton(whole["name"], points, parents, chains)
+
+
+def stance_of(clips: Mapping[str, Any]) -> Stance:
+    """How the body stands in the one clip of a file of clips."""
+    return Stance(**json.loads(handles.take(handles.Text, "rototoon_clip_stance", *as_json(clips))))
 
 
 def capture_clip(
@@ -144,14 +173,23 @@ def translate_clip(
 ) -> dict[str, Any]:
     """Re-makes the `motion` of the character `content` in the style of the character `style`. Returns a file of clips.
 
-    Options: `preset`, `timing` (``"content"`` or ``"style"``), `strength` (0 to 3), `limb_lengths`, `contacts`, `keys` (drawn poses:
+    Options are those of `translate_and_judge`.
+    """
+    return translate_and_judge(clips, style=style, motion=motion, content=content, progress=progress, **options).clips
+
+
+def translate_and_judge(
+    clips: Mapping[str, Any], *, style: str, motion: str, content: str, progress: Progress | None = None, **options: Any
+) -> Translated:
+    """Re-makes the `motion` of the character `content` in the style of the character `style`, and says what the result rests on.
+
+    Options: `preset`, `timing` (``"content"`` or ``"style"``), `strength` (0, the content's own motion, to 3), `limb_lengths`, `contacts`, `keys` (drawn poses:
     ``[{"frame": 0, "points": [[x, y], ...]}]``), `threads`.
     """
-    given = {"style": style, "motion": motion, "content": content, **options}
+    given = {"style": style, "motion": motion, "content": content, "notes": True, **options}
     with handles.progress_callback(progress) as callback:
         arguments = (*as_json(clips), *as_json(given), callback, None)
-        made: dict[str, Any] = json.loads(handles.take(handles.Text, "rototoon_translate_clip", *arguments))
-    return made
+        return Translated(**json.loads(handles.take(handles.Text, "rototoon_translate_clip", *arguments)))
 
 
 def reshape(

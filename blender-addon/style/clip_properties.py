@@ -1,10 +1,8 @@
 """Properties of several operators: a clip of the library, the style in which it is re-made, and the library."""
 
 from collections.abc import Callable
-from typing import Any
-
 import bpy
-from rototoon.style import translate_clip
+from rototoon.style import Translated, translate_and_judge
 from rototoon.types import Progress
 
 from . import clip_browser
@@ -55,7 +53,7 @@ _SHARED = {
         bpy.props.FloatProperty,
         {
             "name": "Strength",
-            "description": "Strength of the style: 0 is none, 1 the most probable. A little more is recognised better. Only for "
+            "description": "Strength of the style: 0 is none, the motion as it is. 1 is the most probable. A little more is recognised better. Only for "
             "the method Rototoon",
             "default": 1.1,
             "min": 0,
@@ -84,6 +82,19 @@ _SHARED = {
             "options": {"SKIP_SAVE"},
         },
     ),
+    "mirror": (
+        bpy.props.EnumProperty,
+        {
+            "name": "Mirror",
+            "description": "Whether the clip is mirrored, left for right",
+            "items": [
+                ("auto", "Automatic", "If what moves and the clip look to different sides"),
+                ("on", "On", "Mirror the clip"),
+                ("off", "Off", "Leave the clip as it is"),
+            ],
+            "default": "auto",
+        },
+    ),
     "first": (
         bpy.props.IntProperty,
         {"name": "First", "description": "First frame of the clip, in scene frames", "default": 0},
@@ -110,6 +121,18 @@ def shared(what: str, **other):
     return make(**how)
 
 
+def mirroring(looks: dict[str, str | None] | None, mirrored: bool) -> str:
+    """What a report says about a clip that was mirrored, or perhaps should have been; empty if there is nothing to say.
+
+    `looks` are the sides to which the drawing or the rig, and the clip, look; `None` if they did not decide it.
+    """
+    if looks is None or (not mirrored and None not in looks.values()):
+        return ""
+    sides = {who: side or "to a side that cannot be told" for who, side in looks.items()}
+    first, second = (f"the {who} {'looks ' if not number else ''}{side}" for number, (who, side) in enumerate(sides.items()))
+    return f"; {first} and {second}, so the clip {'is' if mirrored else 'is not'} mirrored: see Mirror"
+
+
 class Performance:
     """Properties of a clip that is saved."""
 
@@ -128,10 +151,10 @@ class Manner:
     preset: shared("preset")
     strength: shared("strength")
 
-    def remake(self, folder: str, motion: str, content: str) -> Callable[[Progress, int], dict[str, Any]]:
+    def remake(self, folder: str, motion: str, content: str) -> Callable[[Progress, int], Translated]:
         """A function of a progress callback and a number of threads. It re-makes the motion of `content` in the style of `style`.
 
         It may run in a thread, since it does not use the operator any more.
         """
         said = {"style": self.style, "motion": motion, "content": content, "preset": self.preset, "strength": self.strength}
-        return lambda progress, threads: translate_clip(clips_of(folder), progress=progress, threads=threads, **said)
+        return lambda progress, threads: translate_and_judge(clips_of(folder), progress=progress, threads=threads, **said)

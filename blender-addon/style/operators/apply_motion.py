@@ -40,7 +40,7 @@ class ROTOTOON_OT_apply_motion(Manner, _Content, Reshaping, bpy.types.Operator):
 
     def begin(self, context):
         remake = self.remake(folder_of(context.object, self.folder), self.motion, self.content)
-        return self.work(context, lambda progress, threads: (remake(progress, threads), {}), before=0.5)
+        return self.work(context, remake, before=0.5)
 
 
 CLASSES = (ROTOTOON_OT_apply_motion,)

@@ -6,8 +6,8 @@ from ...blender import guard, picture_mesh, picture_source
 from ...blender.errors import Problem
 from .. import picture_pieces
 from ..clip_library import clip_of, folder_of
-from ..clip_properties import Manner, shared
-from .reshaping_base import Reshaping, mirroring, unmoved
+from ..clip_properties import Manner, mirroring, shared
+from .reshaping_base import Reshaping
 
 
 class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
@@ -50,7 +50,7 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         remake = self.remake(folder, self.motion, self.character) if self.style else None
 
         def clips(progress, threads):
-            return (remake(progress, threads), {}) if remake is not None else clip_of(folder, character, motion)
+            return remake(progress, threads) if remake is not None else clip_of(folder, character, motion)
 
         worker = self.work(context, clips, 0.5 if self.style else 0.0, self._cut)
         self._source = picture_source.of(context.object, picture, self._drawing.frame)
@@ -64,11 +64,11 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         """Makes the mesh."""
         name = f"{self._ob.name} {self.motion}"
         made = picture_mesh.write(self._ob, self._source, self._pieces, work.result, self._drawing.frame, name)
-        self.warn(unmoved(work.result.still))
+        shapes = len(made.data.shape_keys.key_blocks) - 1
+        self.tell(context, work.result, shapes)
         if self.hide and self._source.ob is not None:
             self._source.ob.hide_render = self._source.ob.hide_viewport = True
-        shapes = len(made.data.shape_keys.key_blocks) - 1
-        mirrored = mirroring(work.result)
+        mirrored = mirroring(work.result.looks, work.result.mirrored)
         return f'{len(self._pieces)} pieces, {shapes} frames after frame {self._drawing.frame}: "{made.name}"{mirrored}'
 
 

@@ -1,7 +1,7 @@
 """Base of the operators that make a drawing follow a clip."""
 
 import bpy
-from rototoon.style import reshape
+from rototoon.style import Translated, reshape
 
 from ...blender import guard, preferences
 from ...blender.errors import Problem
@@ -10,7 +10,7 @@ from ...common import jobs
 from ...common.operators import Long, OnContours
 from ...common.wording import listed
 from .. import reshaping
-from ..clip_properties import shared
+from ..clip_properties import mirroring, shared
 
 
 class Reshaping(OnContours, Long):
@@ -29,16 +29,7 @@ class Reshaping(OnContours, Long):
         description="Which chain of the clip's body moves which chain of the drawing's, where their names differ: "
         "l_arm = l_foreleg, r_arm = r_foreleg",
     )
-    mirror: bpy.props.EnumProperty(
-        name="Mirror",
-        description="Whether the clip is mirrored, left for right",
-        items=[
-            ("auto", "Automatic", "If drawing and clip look to different sides"),
-            ("on", "On", "Mirror the clip"),
-            ("off", "Off", "Leave the clip as it is"),
-        ],
-        default="auto",
-    )
+    mirror: shared("mirror")
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -47,10 +38,10 @@ class Reshaping(OnContours, Long):
     def work(self, context, clips, before=0.0, more=None):
         """The worker that reshapes the active drawing.
 
-        `clips(progress, threads)` returns clips and options of `reshape`. `before` is its share of the work. `more(drawing)` returns
+        `clips(progress, threads)` returns clips and options of `reshape`, or a clip that was re-made (`Translated`). `before` is its share of the work. `more(drawing)` returns
         further options.
         """
-        self._ob = context.object
+        self._ob, self._rests_on = context.object, []
         if self.changes == guard.DRAWINGS:
             guard.need_some(tracking.contour_layers(self._ob), hidden=True)
         self._drawing = drawing = reshaping.begin(self._ob, context.scene.frame_current)
@@ -59,7 +50,11 @@ class Reshaping(OnContours, Long):
         further = more(drawing) if more is not None else {}
 
         def run(progress):
-            chosen, options = clips(lambda done, step: progress(before * done, step), threads)
+            chosen, options = clips(lambda done, step: progress(before * done, step), threads), {}
+            if isinstance(chosen, Translated):
+                chosen, self._rests_on = chosen.clips, chosen.notes
+            else:
+                chosen, options = chosen
             rest = lambda done, step: progress(before + (1 - before) * done, step)  # noqa: E731 - the rest of the bar
             return reshape(drawing.project, chosen, rest, threads=threads, **how, **options, **further)
 
@@ -73,10 +68,18 @@ class Reshaping(OnContours, Long):
         said = ", ".join(f'"{part}" on {listed(on)}' for part, on in kept.items())
         self.warn(f"your corrections stay: {said}; Release Pins lets them follow the clip" if said else "")
         self.warn(guard.left_out(layers, hidden=True))
-        self.warn(unmoved(work.result.still))
+        self.tell(context, work.result, frames)
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
-        mirrored = mirroring(work.result)
+        mirrored = mirroring(work.result.looks, work.result.mirrored)
         return f"{frames} frames after frame {self._drawing.frame}{mirrored}" + (f"; no limb carries {given}" if given else "")
+
+    def tell(self, context, result, frames: int) -> None:
+        """Warns of what a person should know about a result of so many frames."""
+        self.warn(unmoved(result.still))
+        for note in (*self._rests_on, *result.notes):
+            self.warn(note)
+        end, last = context.scene.frame_end, self._drawing.frame + frames
+        self.warn(f"the frames go on to {last}, beyond the end of the scene ({end})" if last > end else "")
 
 
 def _pairs(text: str) -> list[list[str]]:
@@ -91,14 +94,3 @@ def _pairs(text: str) -> list[list[str]]:
 def unmoved(chains: list[str]) -> str:
     """The warning about chains of the drawing's body that keep their shape; empty if there are none."""
     return f"no chain of the clip moves {', '.join(chains)}: see Chains" if chains else ""
-
-
-def mirroring(result) -> str:
-    """What the report says about a clip that was mirrored, or perhaps should have been; empty if there is nothing to say."""
-    if result.looks is None:
-        return ""
-    looks = {who: side or "to a side that cannot be told" for who, side in result.looks.items()}
-    if not result.mirrored and None not in result.looks.values():
-        return ""
-    done = "is mirrored" if result.mirrored else "is not mirrored"
-    return f"; the drawing looks {looks['drawing']} and the clip {looks['clip']}, so the clip {done}: see Mirror"
