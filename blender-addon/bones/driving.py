@@ -3,11 +3,16 @@
 A bone first swings into the plane, once, the shortest way. Then it turns about the view's axis by the angle of the clip's limb. So a
 bone keeps its roll and turns evenly. If a limb has several bones, all make the same turn. Bones without a limb keep their pose and
 move with their parents. The pelvis moves in the plane, at the armature's size.
+
+A rig that looks to the other side than the clip follows the mirrored clip, as drawings do. A rig looks to where its feet point in the
+plane, else to where its knees bend. Where the clip's figure is on the ground, the lower ankle has the height that the lower one has at
+rest: legs of other proportions, and postures that are tilted into the plane, would make the rig float or sink. In the air the shift
+is that of the frames around, so a jump keeps its height.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +30,9 @@ LIMBS = (
     ("l_hip", "l_knee"), ("l_knee", "l_ankle"), ("r_hip", "r_knee"), ("r_knee", "r_ankle"),
 )  # fmt: skip
 """Limbs whose bones turn. Collar bones and hips keep their pose."""
+ANKLES = ("l_ankle", "r_ankle")
+KNEE = 0.005
+"""A knee is bent at rest if it is this share of the leg beside the line from hip to ankle."""
 FLAT = 0.2
 """If a smaller share of a limb's rest length is in the plane, its rest direction there is not used."""
 _PATHS = {"QUATERNION": ("rotation_quaternion", 4), "AXIS_ANGLE": ("rotation_axis_angle", 4)}
@@ -59,6 +67,35 @@ class Plane:
     def on(self, angle: float) -> Vector:
         """The direction at an angle in the plane."""
         return self.right * float(np.cos(angle)) + self.up * float(np.sin(angle))
+
+
+def looks(ob, plane: Plane) -> str | None:
+    """The side to which a rig looks in the plane, "left" or "right"; `None` where it does not tell."""
+    bones, table = armatures.bones_of(ob), key_points.table_of(ob)
+    toes, size = 0.0, 0.0
+    for ankle in ANKLES:
+        place, shin = Vector(_place(table[ankle], bones)), table[ankle]
+        own = [name for name, bone in bones.items() if bone.parent == shin[0]] if shin[1] > 0 else [shin[0]]
+        for bone in (bones[name] for name in own):
+            foot = Vector(bone.tail - bone.head)
+            if (Vector(bone.head) - place).length <= 0.5 * foot.length:
+                toes, size = toes + foot.dot(plane.right), size + foot.length
+    if size and abs(toes) >= FLAT * size:
+        return "right" if toes > 0 else "left"
+    bent, size = 0.0, 0.0
+    for points in (("l_hip", "l_knee", "l_ankle"), ("r_hip", "r_knee", "r_ankle")):
+        hip, knee, ankle = (Vector(_place(table[point], bones)) for point in points)
+        leg = ankle - hip
+        bent += (knee - hip - leg * ((knee - hip).dot(leg) / max(leg.length_squared, 1e-12))).dot(plane.right)
+        size += leg.length
+    return None if abs(bent) < KNEE * size else "right" if bent > 0 else "left"
+
+
+def mirrored(postures: np.ndarray) -> np.ndarray:
+    """Postures (F, 17, 2) mirrored left for right about the first pelvis."""
+    made = postures.copy()
+    made[..., 0] = 2 * postures[0, 0, 0] - postures[..., 0]
+    return made
 
 
 def turns(ob, postures: np.ndarray, plane: Plane) -> list[Turn]:
@@ -114,11 +151,40 @@ def _carrying_legs(table: bone_names.Table, bones) -> set[str]:
     return found
 
 
-def poses(ob, postures: np.ndarray, plane: Plane, move: bool) -> Iterator[dict[str, Matrix]]:
-    """For each posture the basis matrices of the driven bones, relative to parent and rest, as their channels have them."""
-    driven = {name: turn for turn in turns(ob, postures, plane) for name in turn.bones}
+def poses(ob, postures: np.ndarray, plane: Plane, move: bool, air: Sequence[bool]) -> list[dict[str, Matrix]]:
+    """For each posture the basis matrices of the driven bones, relative to parent and rest, as their channels have them.
+
+    With `move` the pelvis moves as in the clip, and feet stand on the ground on the frames that are not in the `air`.
+    """
     pelvis = key_points.table_of(ob)["pelvis"][0]
-    shifts = _shifts(ob, postures, plane) if move and not ob.data.bones[pelvis].use_connect else None
+    if not move or ob.data.bones[pelvis].use_connect:
+        return [made for made, _ in _posed(ob, postures, plane, None)]
+    shifts = _shifts(ob, postures, plane)
+    low = [lowest for _, lowest in _posed(ob, postures, plane, shifts)]
+    shifts = [shift + plane.up * up for shift, up in zip(shifts, _lifts(ob, plane, low, air))]
+    return [made for made, _ in _posed(ob, postures, plane, shifts)]
+
+
+def _lifts(ob, plane: Plane, low: list[float], air: Sequence[bool]) -> np.ndarray:
+    """How far each posture is to be lifted so that its lower ankle is as high as at rest. `low` are the heights of the lower ankles."""
+    bones, table = armatures.bones_of(ob), key_points.table_of(ob)
+    pelvis = table["pelvis"][0]
+    if any(not bone_names.path(pelvis, table[ankle][0], bones) for ankle in ANKLES):
+        return np.zeros(len(low))  # the legs do not hang on the pelvis
+    rest = min(Vector(_place(table[ankle], bones)).dot(plane.up) for ankle in ANKLES)
+    wanted = rest - np.array(low)
+    frames = np.arange(len(low))
+    ground = frames[~np.array(air, bool)]
+    if not len(ground):
+        return np.zeros(len(low))
+    return np.maximum(np.interp(frames, ground, wanted[ground]), wanted)
+
+
+def _posed(ob, postures: np.ndarray, plane: Plane, shifts: list[Vector] | None) -> Iterator[tuple[dict[str, Matrix], float]]:
+    """For each posture the basis matrices of the driven bones, and the height of the lower ankle in the plane."""
+    table = key_points.table_of(ob)
+    driven = {name: turn for turn in turns(ob, postures, plane) for name in turn.bones}
+    pelvis = table["pelvis"][0]
     for k in range(len(postures)):
         posed: dict[str, Matrix] = {}
         result: dict[str, Matrix] = {}
@@ -136,7 +202,8 @@ def poses(ob, postures: np.ndarray, plane: Plane, move: bool) -> Iterator[dict[s
                 matrix = Matrix.LocRotScale(place, turned, matrix.to_scale())
                 result[bone.name] = bone.convert_local_to_pose(matrix, bone.matrix_local, invert=True, **above)
             posed[bone.name] = matrix
-        yield result
+        along = lambda name, share: posed[name] @ Vector((0, ob.data.bones[name].length * share, 0))  # noqa: E731
+        yield result, min(along(*table[ankle]).dot(plane.up) for ankle in ANKLES)
 
 
 def _shifts(ob, postures: np.ndarray, plane: Plane) -> list[Vector]:

@@ -2,14 +2,14 @@
 
 import bpy
 import numpy as np
-from rototoon.style import skeleton_of
+from rototoon.style import skeleton_of, stance_of
 
 from ...blender import actions, armatures, preferences
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnArmature
 from ...style.clip_library import clips_of, folder_of
-from ...style.clip_properties import Manner, shared
+from ...style.clip_properties import Manner, mirroring, shared
 from .. import driving, key_points
 
 
@@ -32,6 +32,7 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
     view: bpy.props.EnumProperty(name="Plane", description="The plane in which the limbs move", items=armatures.VIEWS)
     start: bpy.props.IntProperty(name="Start", description="Frame of the first posture", default=1)
     move: bpy.props.BoolProperty(name="Move", description="The pelvis moves as in the clip", default=True)
+    mirror: shared("mirror")
     folder: shared("folder")
 
     def invoke(self, context, _event):
@@ -39,7 +40,7 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         return context.window_manager.invoke_props_dialog(self)
 
     def begin(self, context):
-        self._ob = context.object
+        self._ob, self._rests_on = context.object, []
         key_points.table_of(self._ob)
         folder, threads = folder_of(self._ob, self.folder), preferences.threads()
         content, motion = self.content, self.motion
@@ -47,10 +48,11 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
 
         def work(progress):
             if remake is None:
-                clips = clips_of(folder)
+                self._file = clips = clips_of(folder)
                 return _only(clips, content, motion), clips["fps"]
-            clips = remake(progress, threads)
-            return clips["clips"][0], clips["fps"]
+            made = remake(progress, threads)
+            self._rests_on, self._file = made.notes, made.clips
+            return made.clips["clips"][0], made.clips["fps"]
 
         return jobs.Worker(work)
 
@@ -58,14 +60,25 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         (clip, fps), ob, scene = work.result, self._ob, context.scene
         postures = np.array(clip["points"], np.float64)
         plane = driving.Plane.of(ob, scene, self.view)
-        found = list(driving.poses(ob, postures, plane, self.move))
+        rig, mirrored = driving.looks(ob, plane), self.mirror == "on"
+        one = {key: value for key, value in self._file.items() if key != "clips"} | {"clips": [clip]}
+        stance = stance_of(one)
+        if self.mirror == "auto":
+            mirrored = None not in (rig, stance.looks) and rig != stance.looks
+        if mirrored:
+            postures = driving.mirrored(postures)
+        found = driving.poses(ob, postures, plane, self.move, stance.air)
         frames = self.start + np.arange(len(postures)) * scene.render.fps / scene.render.fps_base / fps
         curves = driving.channels(ob, found, self.move)
         manner = f" as {self.style}" if self.style else ""
         before = actions.give(ob, "OBJECT", f"{ob.name} {self.motion}{manner}", frames, curves)
+        for note in self._rests_on:
+            self.warn(note)
+        self.warn(f"the frames go on to {frames[-1]:g}, beyond the end of the scene ({scene.frame_end})" if frames[-1] > scene.frame_end else "")
         said = f"{len(found[0])} bones on frames {frames[0]:g} to {frames[-1]:g}"
         held = [name for name in found[0] if any(not c.mute for c in ob.pose.bones[name].constraints)]
         self.warn(f"constraints also move {', '.join(held)}" if held else "")
+        said += mirroring({"rig": rig, "clip": stance.looks}, mirrored) if self.mirror == "auto" else ""
         return said + (f'; the action "{before}" is kept' if before else "")
 
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xdaa68ca1428882a8
+HEADER_HASH = 0x7681a613db39e5d4
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -121,6 +121,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_skeleton": (
         (1, "skeleton_length", ctypes.c_size_t),
     ),
+    "rototoon_clip_stance": (
+        (1, "clips_length", ctypes.c_size_t),
+    ),
     "rototoon_import_motion": (
         (1, "motion_length", ctypes.c_size_t),
         (3, "options_length", ctypes.c_size_t),
@@ -138,11 +141,6 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
         (1, "folder_length", ctypes.c_size_t),
         (3, "clips_length", ctypes.c_size_t),
         (5, "source_length", ctypes.c_size_t),
-    ),
-    "rototoon_library_add_files": (
-        (1, "folder_length", ctypes.c_size_t),
-        (3, "files_length", ctypes.c_size_t),
-        (5, "options_length", ctypes.c_size_t),
     ),
     "rototoon_library_find": (
         (1, "folder_length", ctypes.c_size_t),
@@ -554,6 +552,13 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]
+    library.rototoon_clip_stance.restype = ctypes.c_int32
+    library.rototoon_clip_stance.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
     library.rototoon_import_motion.restype = ctypes.c_int32
     library.rototoon_import_motion.argtypes = [
         ctypes.c_void_p,
@@ -595,17 +600,6 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_size_t,
         ctypes.c_void_p,
         ctypes.c_size_t,
-        ctypes.c_void_p,
-    ]
-    library.rototoon_library_add_files.restype = ctypes.c_int32
-    library.rototoon_library_add_files.argtypes = [
-        ctypes.c_void_p,
-        ctypes.c_size_t,
-        ctypes.c_void_p,
-        ctypes.c_size_t,
-        ctypes.c_void_p,
-        ctypes.c_size_t,
-        ctypes.c_void_p,
         ctypes.c_void_p,
     ]
     library.rototoon_library_find.restype = ctypes.c_int32

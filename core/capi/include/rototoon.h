@@ -585,7 +585,8 @@ void rototoon_pieces_free(struct RototoonPieces *pieces);
 // clip, `first` and `last` its first and last frame. The frames may be left out.
 //
 // `made` is JSON: `{"clips": a file of clips, "first": frame of the first posture, "guessed": {key point: number of
-// frames}}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
+// frames}, "doubts": [text]}`. `guessed` counts the frames on which no contour defines the key point, so that it was filled in.
+// `doubts` says of each part that limbs hang on where its contours are lost or doubtful.
 RototoonStatus rototoon_capture_clip(const uint8_t *document,
                                      size_t document_length,
                                      const uint8_t *options,
@@ -603,6 +604,16 @@ RototoonStatus rototoon_skeleton(const uint8_t *skeleton,
                                  size_t skeleton_length,
                                  struct RototoonText **made,
                                  struct RototoonText **error);
+
+// How the body of a clip stands: to which side it looks, and on which frames it is in the air.
+//
+// `clips` is a file of clips as JSON, with one clip.
+//
+// `made` is JSON: `{"looks": "left", "right" or null where it cannot be told, "air": [true or false for each frame]}`.
+RototoonStatus rototoon_clip_stance(const uint8_t *clips,
+                                    size_t clips_length,
+                                    struct RototoonText **made,
+                                    struct RototoonText **error);
 
 // Makes a skeleton clip from motion capture, seen from one direction.
 //
@@ -632,11 +643,12 @@ RototoonStatus rototoon_import_motion(const uint8_t *motion,
 //
 // - `preset`: the method.
 // - `timing`: whose timing the result has, "content" or "style".
-// - `strength`: a number from 0 to 3, the factor on the change that the style makes.
+// - `strength`: a number from 0 to 3, the factor on the change that the style makes. With 0 the result is the content's own motion.
 // - `limb_lengths`: whether limbs keep within the lengths of the style's clips.
 // - `contacts`: whether feet that stand in the content's clip stay where they stand.
 // - `keys`: drawn poses, in the form of a file of key poses.
 // - `threads`: number of threads, 0 for one per core.
+// - `notes`: true to get `{"clips", "notes": [text]}`, with what a person should know about the result.
 //
 // `made` is a file of clips with one clip.
 RototoonStatus rototoon_translate_clip(const uint8_t *clips,
@@ -671,6 +683,8 @@ RototoonStatus rototoon_translate_clip(const uint8_t *clips,
 // - `mirrored`: whether the clip was mirrored.
 // - `looks`: `{"drawing", "clip"}`, the sides to which they look, "left", "right" or null where it cannot be told. It is null if they did
 //   not decide whether the clip was mirrored.
+// - `notes`: what a person should know beside, in words: a clip of another frame rate, which is brought to the document's; parts that go
+//   through the ground; strokes that lie on no part.
 // - `points`: `{part: [[[x, y]]]}`, for each frame the places of the further points.
 RototoonStatus rototoon_reshape(const uint8_t *document,
                                 size_t document_length,

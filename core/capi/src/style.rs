@@ -11,7 +11,8 @@ use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
 use rototoon::project::library::{Addition, Entry, Existing, Library};
 use rototoon::project::skeleton as bodies;
-use rototoon::reshape::puppet;
+use rototoon::reshape::contacts::Contacts;
+use rototoon::reshape::{facing, puppet};
 use rototoon::scene::{Clip, FrameNumber};
 use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
 use serde::Deserialize;
@@ -64,6 +65,17 @@ pub fn skeleton(json: &str) -> Result<String, Failure> {
     let given: Value = serde_json::from_str(json).map_err(|error| Failure::Error(format!("skeleton: {error}")))?;
     let template = bodies::read(Some(&given)).map_err(Failure::error)?;
     Ok(bodies::whole(&template).to_string())
+}
+
+/// To which side the body of a clip looks, and when it is in the air.
+pub fn stance(clips: &str) -> Result<String, Failure> {
+    let clips = Clips::parse(clips, "clips").map_err(Failure::error)?;
+    let [clip] = &clips.clips[..] else {
+        return Err(Failure::Error(format!("clips: found {} clips, expected one", clips.clips.len())));
+    };
+    let looks = facing::of_clip(&clip.template, &clip.postures).map(Side::id);
+    let air = Contacts::of(&clip.template.legs(), &clip.postures).air;
+    Ok(json!({"looks": looks, "air": air}).to_string())
 }
 
 #[derive(Deserialize)]

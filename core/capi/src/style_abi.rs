@@ -62,6 +62,29 @@ pub unsafe extern "C" fn rototoon_skeleton(
     }
 }
 
+/// How the body of a clip stands: to which side it looks, and on which frames it is in the air.
+///
+/// `clips` is a file of clips as JSON, with one clip.
+///
+/// `made` is JSON: `{"looks": "left", "right" or null where it cannot be told, "air": [true or false for each frame]}`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_clip_stance(
+    clips: *const u8,
+    clips_length: usize,
+    made: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(made, null_mut(), "made")?;
+            let clips = text(clips, clips_length, "clips")?;
+            give(made, RototoonText::new(install(|| style::stance(clips))?));
+            Ok(())
+        })
+    }
+}
+
 /// Makes a skeleton clip from motion capture, seen from one direction.
 ///
 /// `motion` is the text of a BVH file. `options` is a JSON object with the names `character` and `motion`. It may also

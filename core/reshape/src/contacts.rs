@@ -194,7 +194,7 @@ pub(crate) mod tests {
 
     #[test]
     fn a_walk_is_read_with_its_way_and_with_a_fixed_pelvis() {
-        for (way, most) in [(true, 8), (false, 10)] {
+        for (way, most) in [(true, 2), (false, 3)] {
             let found = human(&walk(48, way));
             assert_eq!(found.way, way);
             assert!((found.ground - if way { 0.0 } else { -4.0 }).abs() < 0.3, "{}", found.ground);
