@@ -177,7 +177,7 @@ def test_bones_follow_a_clip_and_give_it_back(addon, tmp_path):
         ob.matrix_world = Matrix.Translation((1, 2, 3)) @ Matrix.Rotation(turned, 4, "Y") @ Matrix.Scale(1.5, 4)
         ob.pose.bones["forearm.L"].rotation_mode = "XYZ"
         ob.pose.bones["thigh.R"].rotation_mode = "AXIS_ANGLE"
-        settings = {"content": "boy", "motion": "walk", "folder": str(shelf), "view": view, "start": 10}
+        settings = {"content": "boy", "motion": "walk", "folder": str(shelf), "view": view, "start": 10, "mirror": "off"}
         assert bpy.ops.rototoon.drive_bones(**settings) == {"FINISHED"}
         settings = {"character": "rig", "motion": "walk", "folder": str(shelf), "view": view, "first": 10, "last": 17, "replace": view != "FRONT" or turned > 0}
         assert bpy.ops.rototoon.save_clip_from_armature(**settings) == {"FINISHED"}
@@ -185,10 +185,58 @@ def test_bones_follow_a_clip_and_give_it_back(addon, tmp_path):
         # The spine is three bones with a bend, and its first one carries the legs: near, not the same.
         assert apart(angles(addon, found)[:, 2:], angles(addon, postures)[:, 2:]) < 2e-3, view
         assert apart(angles(addon, found)[:, :2], angles(addon, postures)[:, :2]) < 0.25, view
-        # Torso for torso the pelvis goes as far.
+        # Torso for torso the pelvis goes as far; feet on the ground decide its height.
         torso = lambda p: np.linalg.norm(np.diff(p[:, :3], axis=1), axis=2).sum(1).mean()  # noqa: E731
         went = (found[-1, 0] - found[0, 0]) / torso(found)
-        assert np.allclose(went, (postures[-1, 0] - postures[0, 0]) / torso(postures), rtol=0.05, atol=0.01), view
+        assert np.allclose(went[0], (postures[-1, 0, 0] - postures[0, 0, 0]) / torso(postures), rtol=0.05, atol=0.01), view
+
+
+def heights(ob, frames):
+    """For each frame the height of the lower ankle and the way of the hips to the front, and of both legs how far knees are in front."""
+    low, knees, hips = [], [], []
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        bones = ob.pose.bones
+        low.append(min(bones[f"foot.{side}"].head.z for side in "LR"))
+        hips.append(-bones["hips"].head.y)
+        for side in "LR":
+            hip, knee, ankle = bones[f"thigh.{side}"].head, bones[f"shin.{side}"].head, bones[f"foot.{side}"].head
+            share = (knee.z - hip.z) / (ankle.z - hip.z)
+            knees.append(-(knee.y - hip.y - share * (ankle.y - hip.y)))
+    return np.array(low), np.array(knees), np.array(hips)
+
+
+def test_a_rig_that_looks_to_the_other_side_gets_the_mirrored_clip_and_stands_on_the_ground(addon, tmp_path):
+    # Knees in front of a figure that looks right; it squats, jumps, and lands.
+    postures = walk(addon, 12)
+    names = addon("rototoon.style").KEY_POINTS
+    for frame, lift in enumerate((0, 0, 6, 12, 6, 0, -40, -60, -40, 0, 0, 0)):
+        for hip, knee, ankle in (("l_hip", "l_knee", "l_ankle"), ("r_hip", "r_knee", "r_ankle")):
+            hip, knee, ankle = (names.index(point) for point in (hip, knee, ankle))
+            squat = max(lift, 0)
+            postures[frame, :11, 1] = postures[frame, :11, 1] + (0 if hip > 11 else lift)
+            postures[frame, hip] = (100 + 6 * frame, 200 + lift)
+            postures[frame, ankle] = (100 + 6 * frame, 276 + min(lift, 0))
+            postures[frame, knee] = (112 + squat + 6 * frame, 238 + lift / 2)
+    put(addon, tmp_path, postures)
+    scene = bpy.context.scene
+    scene.render.fps, scene.frame_end = 24, 9
+    ob = armature()
+    drive = {"content": "boy", "motion": "walk", "folder": str(tmp_path), "view": "RIGHT", "start": 1}
+    addon("scripting").take_reports()
+    assert bpy.ops.rototoon.drive_bones(**drive) == {"FINISHED"}
+    said = addon("scripting").take_reports()[-1].text
+    assert "the rig looks left and the clip right, so the clip is mirrored" in said
+    assert "the frames go on to 12, beyond the end of the scene (9)" in said
+    low, knees, hips = heights(ob, range(1, 13))
+    assert (knees > 0.02).all(), "knees bend to the front, where the toes point"
+    assert hips[-1] > hips[0] + 0.3, "and it goes to the front"
+    ground = np.array([frame not in (6, 7, 8) for frame in range(12)])
+    assert np.allclose(low[ground], 0.1, atol=1e-4), low
+    assert low[7] > 0.3 and (low > 0.1 - 1e-4).all(), "a jump leaves the ground"
+    assert bpy.ops.rototoon.drive_bones(mirror="off", **drive) == {"FINISHED"}
+    assert (heights(ob, range(1, 13))[1] < -0.02).all()
+    assert "mirrored" not in addon("scripting").take_reports()[-1].text
 
 
 def test_existing_keys_are_not_touched(addon, tmp_path):

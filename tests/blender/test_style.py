@@ -125,9 +125,21 @@ def test_capture_clip_style_reshape(addon, tmp_path):
     lean = lambda frame: math.atan2(*(_axis(addon, ob, frame) * (1, -1)))  # noqa: E731
     upright = np.mean([lean(frame) for frame in range(2, shots.COUNT + 2)])
     apply = {"motion": "walk", "content": "plain", "style": "old", "strength": 2.0}
+    scripting = addon("scripting")
+    bpy.context.scene.frame_end = shots.COUNT + 1
+    scripting.take_reports()
     assert bpy.ops.rototoon.apply_motion(**apply) == {"FINISHED"}
+    report = scripting.take_reports()[-1]
+    assert report.kind == "WARNING" and "the library is too small to rehearse on" in report.text, report
+    assert "beyond the end" not in report.text
     bent = np.mean([lean(frame) for frame in range(2, shots.COUNT + 2)])
     assert bent > upright + 0.1, (upright, bent)
+    bpy.context.scene.frame_end = shots.COUNT
+    assert bpy.ops.rototoon.apply_motion(**{**apply, "strength": 0.0}) == {"FINISHED"}
+    said = scripting.take_reports()[-1].text
+    assert "with a strength of 0 the result is the content's own motion" in said
+    assert f"the frames go on to {shots.COUNT + 1}, beyond the end of the scene ({shots.COUNT})" in said
+    assert abs(np.mean([lean(frame) for frame in range(2, shots.COUNT + 2)]) - upright) < 0.02
     bpy.ops.rototoon.clear_generated()
     assert [frame.frame_number for frame in shots.layer_of(ob).frames] == [1]
 
@@ -181,6 +193,27 @@ def test_clips_of_other_bodies_are_used_where_they_can_be(addon, tmp_path):
     ]
     assert found.characters() == ["plain", "tit"] and found.troubles == []
     assert found.characters(human=True) == ["plain"] and found.motions(human=True) == ["walk"]
+
+
+def test_save_clip_names_lost_and_doubtful_contours(addon, tmp_path, monkeypatch):
+    performer(addon, tmp_path)
+    module, scripting = addon("style.operators.save_clip"), addon("scripting")
+    read = module.document.read
+
+    def doubtful(ob, **how):
+        reading = read(ob, **how)
+        arm = reading.document["parts"][2]
+        arm["tracks"] = {frame: arm["keys"].pop(frame) for frame in list(arm["keys"])[2:5]}
+        arm["confidence"] = {frame: [share] * 8 for frame, share in zip(arm["tracks"], (0.2, 0.6, 0.9))}
+        return reading
+
+    monkeypatch.setattr(module.document, "read", doubtful)
+    scripting.take_reports()
+    assert bpy.ops.rototoon.save_clip(character="me", motion="walk", folder=str(tmp_path / "clips")) == {"FINISHED"}
+    report = scripting.take_reports()[-1]
+    assert report.kind == "WARNING", report
+    assert "the clip has what lost and doubtful contours show: part " in report.text
+    assert 'part "Part 3" (neck to r_shoulder, r_shoulder to r_elbow, r_elbow to r_wrist): lost on 3; doubtful on 4' in report.text, report.text
 
 
 def test_marks_are_kept_with_the_document(addon, tmp_path):

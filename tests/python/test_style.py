@@ -73,6 +73,29 @@ def test_contours_become_clips():
     assert "l_elbow" in made.guessed and "r_elbow" not in made.guessed
 
 
+def test_lost_contours_are_told():
+    shot = figure(FRAMES, swing=0.5)
+    arm = next(part for part in shot["parts"] if part["name"] == "arm")
+    arm["tracks"] = {frame: arm["keys"].pop(frame) for frame in ("2", "3")}
+    arm["confidence"] = {"2": [0.1] * len(arm["tracks"]["2"]), "3": [0.7] * len(arm["tracks"]["3"])}
+    assert style.capture_clip(figure(FRAMES), "anna", "walk").doubts == []
+    (doubt,) = style.capture_clip(shot, "anna", "walk").doubts
+    assert doubt.startswith('part "arm" (r_shoulder to r_elbow, ') and doubt.endswith("): lost on 2; doubtful on 3")
+
+
+def test_a_clip_tells_its_side_and_when_it_is_in_the_air():
+    posture = [[0, -90], [0, -115], [0, -140], [0, -150], [0, -165]]
+    posture += [[0, -135], [-12, -110], [0, -85]] * 2 + [[0, -88], [14, -44], [0, 0]] * 2
+    lifted = [[[x, y - 50 * (frame in (3, 4))] for x, y in posture] for frame in range(8)]
+    stance = style.stance_of({"rototoon_clips": 1, "clips": [{"character": "a", "motion": "hop", "points": lifted}]})
+    assert (stance.looks, [frame for frame, up in enumerate(stance.air) if up]) == ("right", [])
+    moving = [[[x + frame, y] for x, y in points] for frame, points in enumerate(lifted)]
+    stance = style.stance_of({"rototoon_clips": 1, "clips": [{"character": "a", "motion": "hop", "points": moving}]})
+    assert [frame for frame, up in enumerate(stance.air) if up] == [3, 4]
+    with pytest.raises(RototoonError, match="clips: found 0 clips, expected one"):
+        style.stance_of({"rototoon_clips": 1, "clips": []})
+
+
 def test_bodies_are_told_with_their_key_points_and_chains():
     human = style.skeleton("human")
     assert (human.name, human.points, human.parents) == ("human", style.KEY_POINTS, style.PARENTS)
@@ -123,7 +146,11 @@ def test_a_manner_is_given_and_a_drawing_follows(shelf):
     assert seen[0][0] == 0 and seen[-1][0] == 1
     neck, pelvis = clip["points"][0][2], clip["points"][0][0]
     assert neck[0] - pelvis[0] > 5, "the old man leans"
+    judged = style.translate_and_judge(clips, style="old", motion="walk", content="plain")
+    assert judged.clips == walk and "too small to rehearse on" in judged.notes[0]
     made = style.reshape(figure(), walk)
+    slow = style.reshape({**figure(), "footage": {**figure()["footage"], "fps": 24}}, walk)
+    assert slow.notes[0].startswith("the clip has 12 frames a second and the document 24") and made.notes == []
     assert made.given == [] and made.document["footage"]["last"] == FRAMES - 1
     body = made.document["parts"][1]
     assert sorted(map(int, body["tracks"])) == list(range(FRAMES))

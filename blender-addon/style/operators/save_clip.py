@@ -39,8 +39,8 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
         made = capture_clip(project, character, self.motion, *frames)
         replaced = clip_library.add(folder, [(made.clips, bpy.path.basename(bpy.data.filepath))], self.replace)
         clip_browser.refresh(folder)
-        for doubt in made.doubts:
-            self.warn(f"{doubt}; the clip has what the contours show there")
+        shifted = f" (of the document; scene frames are {offset:+})" if offset else ""
+        self.warn(f"the clip has what lost and doubtful contours show{shifted}: {'; '.join(made.doubts)}" if made.doubts else "")
         count = len(made.clips["clips"][0]["points"])
         guessed = f"; filled in: {', '.join(made.guessed)}" if made.guessed else ""
         return f'"{self.motion}" by "{character}", {counted(count, "frame")}{guessed}{clip_library.replaced(replaced)}'

@@ -156,6 +156,46 @@ fn a_library_is_filled_listed_and_learned_from() {
 }
 
 #[test]
+fn a_list_names_damaged_and_missing_clips() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    std::fs::write(&clips, library().to_string()).unwrap();
+    let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
+    assert!(rototoon(&["style", "library", "add", to, from]).status.success());
+    let list = || {
+        let done = rototoon(&["style", "library", "list", to]);
+        assert!(done.status.success(), "the rest can be used");
+        (String::from_utf8(done.stdout).unwrap(), String::from_utf8(done.stderr).unwrap())
+    };
+    let (all, said) = list();
+    assert_eq!(said, "");
+    std::fs::write(shelf.join("shy-run.clip.json"), "{").unwrap();
+    std::fs::remove_file(shelf.join("old-bow.clip.json")).unwrap();
+    let (rest, said) = list();
+    let good: Vec<&str> = all.lines().filter(|l| !l.contains("shy-run") && !l.contains("old-bow")).collect();
+    assert_eq!(rest.lines().collect::<Vec<_>>(), good);
+    assert!(said.lines().count() == 2 && said.lines().all(|l| l.starts_with("warning: ")), "{said}");
+    assert!(
+        said.contains("shy-run.clip.json: found text that is not JSON") && said.contains("old-bow.clip.json"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_strength_of_0_and_a_small_library_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("clips.json"), library().to_string()).unwrap();
+    let said = |more: &[&str]| {
+        let done = translate(folder.path(), &[&["--style", "old"], more].concat());
+        assert!(done.status.success());
+        String::from_utf8(done.stderr).unwrap()
+    };
+    let small = said(&[]);
+    assert!(small.contains("note: ") && small.contains("the library is too small to rehearse on"), "{small}");
+    assert!(said(&["--strength", "0"]).contains("with a strength of 0 the result is the content's own motion"));
+}
+
+#[test]
 fn clips_of_a_library_may_have_other_frame_rates() {
     let folder = tempfile::tempdir().unwrap();
     let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));

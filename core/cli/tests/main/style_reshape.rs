@@ -80,6 +80,57 @@ fn contours_become_a_clip_and_a_drawing_follows_it() {
 }
 
 #[test]
+fn lost_and_doubtful_contours_of_a_clip_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut shot = figure(6);
+    let keys = shot["parts"][1]["keys"].take();
+    let confidence: serde_json::Map<String, Value> = [("1", 0.2), ("2", 0.3), ("3", 0.95), ("4", 0.6)]
+        .map(|(frame, c)| (frame.to_owned(), json!(vec![c; 8])))
+        .into_iter()
+        .collect();
+    shot["parts"][1]["keys"] = json!({"0": keys["0"], "5": keys["5"]});
+    shot["parts"][1]["tracks"] = keys;
+    shot["parts"][1]["confidence"] = json!(confidence);
+    write(folder, "shot.json", &shot);
+    let clip = |more: &[&str]| {
+        let fixed = ["style", "clip", "shot.json", "--character", "a", "--motion", "b", "-o", "clips.json"];
+        said(&rototoon(folder, &[&fixed[..], more].concat()))
+    };
+    let all = clip(&[]);
+    let wanted = "warning: shot.json: part \"arm\" (r_shoulder to r_wrist): lost on 1-2; doubtful on 4; the clip has";
+    assert!(all.contains(wanted) && !all.contains("part \"body\""), "{all}");
+    let end = clip(&["--frames", "3-5"]);
+    assert!(end.contains("(r_shoulder to r_wrist): doubtful on 4;"), "{end}");
+}
+
+#[test]
+fn a_clip_of_another_rate_lasts_as_long_and_lines_that_lie_on_nothing_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write(folder, "shot.json", &figure(9));
+    let mut doll = figure(1);
+    doll["footage"]["fps"] = json!(24);
+    let line = json!({"name": "ground line", "closed": false, "keys": {"0": [[-100, 110], [300, 110]]}});
+    doll["parts"].as_array_mut().unwrap().push(line);
+    write(folder, "doll.json", &doll);
+    let clip = ["style", "clip", "shot.json", "--character", "anna", "--motion", "glide", "-o", "clips.json"];
+    assert!(rototoon(folder, &clip).status.success());
+    let done = rototoon(folder, &["style", "reshape", "doll.json", "clips.json", "-o", "moved.json"]);
+    let told = said(&done);
+    assert!(done.status.success(), "{told}");
+    let rate = "note: doll.json: the clip has 12 frames a second and the document 24, so its 9 frames become 17";
+    assert!(told.contains(rate), "{told}");
+    let stays = "warning: doll.json: part \"ground line\": no limb carries it, so it stays where it is drawn";
+    assert!(told.contains(stays), "{told}");
+    let moved = read(folder, "moved.json");
+    assert_eq!((&moved["footage"]["last"], moved["footage"]["fps"].as_f64()), (&json!(16), Some(24.0)));
+    let x = |frame: &str| moved["parts"][0]["tracks"][frame][0][0].as_f64().unwrap();
+    assert!((x("16") - x("0") - 8.0).abs() < 1e-3 && (x("8") - x("0") - 4.0).abs() < 1e-3);
+    assert_eq!(moved["parts"][2]["tracks"]["9"], json!([[-100.0, 110.0], [300.0, 110.0]]));
+}
+
+#[test]
 fn errors_name_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
