@@ -74,6 +74,7 @@ fn strokes_that_lie_on_nothing_are_told_by_number() {
     let motion = lifted(&document);
     let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
     assert_eq!(made.strokes, [(1, Given::Nothing)]);
+    assert_eq!(made.notes, ["stroke 1 of the drawing: it lies on no part, so it stays where it is drawn"]);
     let value: serde_json::Value = serde_json::from_str(&document.to_json()).unwrap();
     let drawn = &value["in_betweens"][3]["strokes"];
     assert_eq!((drawn[1]["points"][0][0].as_f64(), drawn[1]["points"][1][0].as_f64()), (Some(-200.0), Some(400.0)));
@@ -120,4 +121,38 @@ fn a_part_on_a_part_without_a_limb_goes_with_it() {
     let apart = |a: &str, b: &str| middle(a).distance(middle(b));
     assert!((apart("eye", "head") - Point::new(50.0, 9.5).distance(Point::new(54.0, 6.0))).abs() < 0.1);
     assert!((apart("far hand", "far arm") - Point::new(42.5, 54.5).distance(Point::new(47.0, 88.0))).abs() < 0.5);
+}
+
+#[test]
+fn a_body_that_goes_through_the_ground_is_told() {
+    let mut document = figure("");
+    let mut motion = waving(&document, 10);
+    motion.postures.remove(0); // which would make it the drawing's own motion
+    let upright = motion.clone();
+    for posture in &mut motion.postures[5..] {
+        let ankles = [posture[13], posture[16]];
+        posture.iter_mut().for_each(|p| p.y += 2.0 * 55.0);
+        (posture[13], posture[16]) = (ankles[0], ankles[1]);
+    }
+    let made = reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let told: Vec<&String> = made.notes.iter().filter(|note| note.contains("\"body\"")).collect();
+    let [told] = told[..] else { panic!("{:?}", made.notes) };
+    assert!(
+        told.starts_with("part \"body\": up to ") && told.ends_with(" px below the ground on frames 5-8"),
+        "{told}"
+    );
+    let made = reshape(&mut figure(""), &job(&upright), &Silent).unwrap();
+    assert_eq!(made.notes, Vec::<String>::new());
+}
+
+#[test]
+fn a_clip_of_the_document_s_rate_stays_and_another_one_lasts_as_long() {
+    let document = figure("");
+    let clip = waving(&document, 5);
+    let footage = &document.scene.footage;
+    assert_eq!(crate::pipeline::at_rate_of(footage, &clip, 24.0), (clip.clone(), None));
+    let (made, said) = crate::pipeline::at_rate_of(footage, &clip, 120.0);
+    assert_eq!((made.postures.len(), &made.postures[0]), (1, &clip.postures[0]));
+    let said = said.unwrap();
+    assert_eq!(said, "the clip has 120 frames a second and the document 24, so its 5 frames become 1");
 }
