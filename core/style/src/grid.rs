@@ -1,13 +1,14 @@
 //! The known clips as a grid of characters × motions, in one frame: pelvis at the origin, torso length 1.
 //!
 //! Division by the character's torso and removal of the pelvis are the global half of the paper's unification (Liang et
-//! al. 2012, eq. 4). The remaining differences of proportion are part of the manner and are learned with it.
+//! al. 2012, eq. 4), limbs of the content's lengths the other (the module `build`).
 //!
 //! Every clip of a motion is brought to one number of frames: that of the content's clip, or that of the motion's first
 //! clip if the content's character lacks the motion. Clips of that length count as aligned. Other clips are aligned by
 //! time warping first.
 
 use super::align;
+use super::build::{self, Build};
 use super::{Request, StyleError};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Clip;
@@ -36,6 +37,8 @@ pub(super) struct Grid {
     pub torso: Vec<f64>,
     /// Frames of the content's clip.
     pub frames: usize,
+    /// Build of each character beside the content's. The clips have the content's.
+    pub builds: Vec<Build>,
     clips: Vec<Option<Vec<Posture>>>,
 }
 
@@ -63,7 +66,17 @@ impl Grid {
         let (style, content) = (index(&characters, request.style), index(&characters, request.content));
         let motion = index(&motions, request.motion);
         let torso = characters.iter().map(|name| torso_of(clips, name)).collect::<Result<_, _>>()?;
-        let mut grid = Self { style, content, motion, torso, frames: 0, clips: Vec::new(), characters, motions };
+        let mut grid = Self {
+            style,
+            content,
+            motion,
+            torso,
+            frames: 0,
+            builds: Vec::new(),
+            clips: Vec::new(),
+            characters,
+            motions,
+        };
         grid.fill(clips, request);
         Ok(grid)
     }
@@ -78,10 +91,29 @@ impl Grid {
                 self.clips[s * self.motions.len() + m] = Some(postures);
             }
         }
-        for m in 0..self.motions.len() {
+        self.builds = (0..self.characters.len()).map(|s| self.build(s)).collect();
+        let count = self.motions.len();
+        for (k, clip) in self.clips.iter_mut().enumerate() {
+            let own = &self.builds[k / count];
+            clip.iter_mut().flatten().for_each(|posture| *posture = build::taken(posture, own));
+        }
+        for m in 0..count {
             self.align(m);
         }
         self.frames = self.get(self.content, self.motion).map_or(1, <[Posture]>::len);
+    }
+
+    /// The build of a character, from the motions that it shares with the content's, else from all.
+    fn build(&self, character: usize) -> Build {
+        let motions = 0..self.motions.len();
+        let pairs = motions.clone().filter_map(|m| self.get(character, m).zip(self.get(self.content, m)));
+        let pairs: Vec<(&[Posture], &[Posture])> = pairs.collect();
+        if !pairs.is_empty() {
+            return build::of(&pairs);
+        }
+        let all =
+            |s: usize| motions.clone().filter_map(|m| self.get(s, m)).flatten().copied().collect::<Vec<Posture>>();
+        build::of(&[(&all(character), &all(self.content))])
     }
 
     /// Brings all clips of a motion to the frames of one of them, the content's if it exists.

@@ -3,7 +3,7 @@
 //! This crate works on key points of skeletons over time ([`Clip`]). It does not draw the result: `rototoon-reshape` lets a
 //! drawing follow a skeleton.
 //!
-//! - [`align`]: clips of one motion brought together in time
+//! - [`align`]: clips of one motion brought together in time; `build`: all clips on one body
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - `stance`, `moving`: the posture that is held and the movement, each a process of its own; `likeness`: which characters are alike
 //! - `distinct`: a result that is told apart from other characters
@@ -16,8 +16,8 @@
 //! # The task
 //!
 //! Characters × motions form a grid of clips with holes; the hole (style, motion) is to be filled, the motion being known
-//! from other characters, the style from other motions. Everything happens with the pelvis at the origin and in torso
-//! lengths; the result gets the style's size and walks the content's way.
+//! from other characters, the style from other motions. Everything happens with the pelvis at the origin, in torso
+//! lengths, and on the content's build; the result gets the style's build and size, and walks the content's way.
 //!
 //! # Example
 //!
@@ -64,6 +64,7 @@ mod additive;
 pub mod align;
 mod basis;
 pub mod bilinear;
+mod build;
 mod cells;
 mod distinct;
 mod episodes;
@@ -84,7 +85,8 @@ pub use grounds::Grounds;
 
 use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
-use rototoon_base::scene::skeleton::{COUNT, Posture, torso};
+use rototoon_base::scene::skeleton::{COUNT, LEGS, Posture, torso};
+use rototoon_base::scene::template::length;
 use rototoon_base::scene::{Cancelled, Clip, Progress};
 use std::borrow::Cow;
 
@@ -328,7 +330,8 @@ pub fn translate_and_judge(
     grounds.sure = made.sure;
     towards_content(&mut made, &grid, grounds.share(), options.keep_lengths);
     meet(&mut made, &keys);
-    let mut postures: Vec<Posture> = made.rows.iter().map(grid::posture).collect();
+    let own = &grid.builds[grid.style];
+    let mut postures: Vec<Posture> = made.rows.iter().map(|row| build::given(&grid::posture(row), own)).collect();
     if options.keep_lengths {
         let held: Vec<usize> = keys.iter().map(|(frame, _)| *frame).collect();
         finish::keep_lengths(&mut postures, &own_postures(&grid), &held);
@@ -336,7 +339,7 @@ pub fn translate_and_judge(
     let size = size_of(&grid, request);
     let content = clips.iter().find(|c| c.character == request.content && c.motion == request.motion);
     if let Some(content) = content.and_then(Clip::human) {
-        place(&mut postures, &content, size, grid.torso[grid.content]);
+        place(&mut postures, &content, size);
         if options.keep_contacts {
             finish::keep_contacts(&mut postures, &content);
         }
@@ -354,10 +357,13 @@ pub fn translate_and_judge(
 /// are kept: its bones keep their directions, so it is the same motion on another body.
 fn towards_content(made: &mut Prediction, grid: &Grid, share: f64, keep_lengths: bool) {
     let Some(content) = grid.get(grid.content, grid.motion).filter(|_| share < 1.0) else { return };
+    let own = &grid.builds[grid.style];
     let mut content = content.to_vec();
     if keep_lengths {
+        content.iter_mut().for_each(|posture| *posture = build::given(posture, own));
         finish::take_lengths(&mut content, &own_postures(grid));
     }
+    content.iter_mut().for_each(|posture| *posture = build::taken(posture, own));
     for (row, posture) in made.rows.iter_mut().zip(&content) {
         row.iter_mut().zip(grid::row(posture)).for_each(|(value, own)| *value = own + share * (*value - own));
     }
@@ -385,7 +391,8 @@ fn keys(grid: &Grid, request: &Request) -> Vec<(usize, Row)> {
     let mut keys: Vec<(usize, Row)> = Vec::new();
     for key in request.keys {
         keys.retain(|(frame, _)| *frame != key.frame);
-        keys.push((key.frame, grid::row(&grid::unified(&key.posture, size))));
+        let unified = build::taken(&grid::unified(&key.posture, size), &grid.builds[grid.style]);
+        keys.push((key.frame, grid::row(&unified)));
     }
     keys.sort_by_key(|(frame, _)| *frame);
     keys
@@ -401,7 +408,8 @@ fn size_of(grid: &Grid, request: &Request) -> f64 {
 }
 
 fn own_postures(grid: &Grid) -> Vec<Posture> {
-    (0..grid.motions.len()).filter_map(|m| grid.get(grid.style, m)).flatten().copied().collect()
+    let own = (0..grid.motions.len()).filter_map(|m| grid.get(grid.style, m)).flatten();
+    own.map(|posture| build::given(posture, &grid.builds[grid.style])).collect()
 }
 
 /// Frames over which what is left of the way to a key pose fades.
@@ -424,12 +432,16 @@ fn meet(made: &mut Prediction, keys: &[(usize, Row)]) {
     }
 }
 
-/// Gives postures the style's size and the content's way: the pelvis goes as far as legs of this size carry it.
-fn place(postures: &mut [Posture], content: &[Posture], size: f64, content_size: f64) {
+/// Gives postures the style's size and the content's way: the pelvis goes as far as legs of this length carry it.
+fn place(postures: &mut [Posture], content: &[Posture], size: f64) {
     let way = resample(content, postures.len());
+    let legs =
+        |postures: &[Posture]| postures.iter().map(|p| LEGS.iter().map(|leg| length(p, leg)).sum::<f64>()).sum::<f64>();
+    let (own, theirs) = (size * legs(postures), legs(&way));
+    let farther = if own > 0.0 && theirs > 0.0 { own / theirs } else { 1.0 };
     let start = way[0][0];
     for (posture, on_way) in postures.iter_mut().zip(&way) {
-        let pelvis = start + (on_way[0] - start) * (size / content_size);
+        let pelvis = start + (on_way[0] - start) * farther;
         *posture = posture.map(|p| p * size + pelvis);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::skeleton::{LEGS, limb_lengths};
+use rototoon_base::scene::skeleton::{LEGS, PARENTS, limb_lengths};
 use rototoon_base::scene::{Silent, Template};
 
 /// A figure at a moment of a motion, with a given stoop and position of the arms.
@@ -177,6 +177,73 @@ fn limbs_keep_the_lengths_of_the_style() {
     }
 }
 
+/// The library with limbs of other lengths: each of the people has its own factors of arms, thighs and shins.
+fn of_builds() -> Vec<Clip> {
+    let factors = [[1.0, 1.0, 1.0], [0.7, 1.5, 1.4], [1.3, 0.8, 0.7], [1.2, 1.2, 0.9], [0.9, 0.6, 0.8]];
+    let mut clips = library();
+    for clip in &mut clips {
+        let [arm, thigh, shin] = factors[PEOPLE.iter().position(|(name, ..)| *name == clip.character).unwrap()];
+        for posture in &mut clip.postures {
+            let before = posture.clone();
+            for k in 1..COUNT {
+                let parent = PARENTS[k];
+                let factor = match k {
+                    6 | 7 | 9 | 10 => arm,
+                    12 | 15 => thigh,
+                    13 | 16 => shin,
+                    _ => 1.0,
+                };
+                posture[k] = posture[parent] + (before[k] - before[parent]) * factor;
+            }
+        }
+    }
+    clips
+}
+
+#[test]
+fn a_build_is_no_manner() {
+    for (id, _, preset) in Preset::ALL {
+        let options = Options { preset, keep_lengths: false, ..Options::default() };
+        let make = |clips: &[Clip]| translate(clips, &request(&[]), &options, &Silent).unwrap().human().unwrap();
+        let (alike, mixed) = (make(&library()), make(&of_builds()));
+        let own = limb_lengths(&human(of_builds().iter().find(|c| c.character == "old").unwrap(), 0));
+        for (a, b) in alike.iter().zip(&mixed) {
+            for k in 1..COUNT {
+                let (a, b) = (a[k] - a[PARENTS[k]], b[k] - b[PARENTS[k]]);
+                assert!(a.angle_to(b).abs() < 0.01, "{id}: limb {k} turns by {} with the build", a.angle_to(b));
+                let off = (b.length() / own[k - 1] - 1.0).abs();
+                assert!(
+                    off < 0.1 || own[k - 1] < 0.2 || preset != Preset::Rototoon,
+                    "{id}: limb {k} is {off} off the style's length"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn longer_legs_go_farther() {
+    let mut clips = of_builds();
+    let walked = clips.iter_mut().find(|c| c.character == "plain" && c.motion == "run").unwrap();
+    for (frame, posture) in walked.postures.iter_mut().enumerate() {
+        posture.iter_mut().for_each(|p| p.x += 0.1 * frame as f64);
+    }
+    let options = Options { keep_contacts: false, ..Options::default() };
+    let made = translate(&clips, &request(&[]), &options, &Silent).unwrap();
+    // Thighs of 0.95 and shins of 1, longer by half and by two fifths.
+    let (went, legs) = (made.postures[23][0].x - made.postures[0][0].x, (1.5 * 0.95 + 1.4) / 1.95);
+    assert!((went - 2.3 * legs).abs() < 0.1, "{went} in place of {}", 2.3 * legs);
+}
+
+#[test]
+fn drawn_poses_are_met_on_any_build() {
+    let clips = of_builds();
+    let truth = human(clips.iter().find(|c| c.character == "old" && c.motion == "run").unwrap(), 5);
+    let key = KeyPose { frame: 5, posture: truth };
+    let made = translate(&clips, &request(&[key]), &Options::default(), &Silent).unwrap();
+    assert!((0..COUNT).all(|k| (made.postures[5][k] - made.postures[5][0]).distance(truth[k] - truth[0]) < 1e-6));
+}
+
 #[test]
 fn a_strength_of_0_is_the_content_s_own_motion() {
     // The old one has longer legs and shorter arms.
@@ -184,7 +251,7 @@ fn a_strength_of_0_is_the_content_s_own_motion() {
     for posture in clips.iter_mut().filter(|c| c.character == "old").flat_map(|c| &mut c.postures) {
         let before = posture.clone();
         for k in 1..COUNT {
-            let parent = rototoon_base::scene::skeleton::PARENTS[k];
+            let parent = PARENTS[k];
             let factor = if k > 11 {
                 1.3
             } else if k > 4 {
@@ -210,7 +277,7 @@ fn a_strength_of_0_is_the_content_s_own_motion() {
     let own = limb_lengths(&human(clips.iter().find(|c| c.character == "old").unwrap(), 0));
     for (a, b) in made.human().unwrap().iter().zip(&content) {
         for k in 1..COUNT {
-            let parent = rototoon_base::scene::skeleton::PARENTS[k];
+            let parent = PARENTS[k];
             let (a, b) = (a[k] - a[parent], b[k] - b[parent]);
             assert!(a.angle_to(b).abs() < 1e-6, "limb {k} turns by {}", a.angle_to(b));
             assert!((a.length() - own[k - 1]).abs() < 1e-2, "limb {k}: {} {}", a.length(), own[k - 1]);
