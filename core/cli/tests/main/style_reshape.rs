@@ -127,7 +127,7 @@ fn a_clip_of_another_rate_lasts_as_long_and_lines_that_lie_on_nothing_are_named(
     assert_eq!((&moved["footage"]["last"], moved["footage"]["fps"].as_f64()), (&json!(16), Some(24.0)));
     let x = |frame: &str| moved["parts"][0]["tracks"][frame][0][0].as_f64().unwrap();
     assert!((x("16") - x("0") - 8.0).abs() < 1e-3 && (x("8") - x("0") - 4.0).abs() < 1e-3);
-    assert_eq!(moved["parts"][2]["tracks"]["9"], json!([[-100.0, 110.0], [300.0, 110.0]]));
+    assert_eq!(moved["parts"][2]["tracks"]["9"], json!([[-100, 110], [300, 110]]));
 }
 
 #[test]
