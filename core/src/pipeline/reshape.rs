@@ -11,6 +11,7 @@
 //! - `loose`: what parts and lines follow that no limb carries
 //! - `store`: the result in the document
 //! - `sunk`: parts that go through the ground
+//! - `told`: what is said about the result
 //! - `rate`: the clip at the document's frame rate
 //!
 //! Marks "in front" and "behind" give the depths of each frame.
@@ -24,9 +25,9 @@ mod moves;
 mod rate;
 mod store;
 mod sunk;
+mod told;
 
 use super::PipelineError;
-use super::report::runs;
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
@@ -146,52 +147,13 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     // Of several errors the first part's is told, whichever was met first.
     let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
     let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let rigid = bodies.iter().zip(&moved).filter(|(_, m)| m.rigid).map(|(b, _)| parts[b.part].name.clone()).collect();
-    let given = bodies.iter().filter_map(|body| Some((body.name.clone(), body.given.clone()?)));
-    let given = given.chain(loose.iter().filter_map(|line| Some((line.name.clone()?, line.given.clone()?))));
-    let free = loose.iter().filter(|line| line.name.is_none());
-    let free: Vec<(usize, Given)> = free.filter_map(|line| Some((line.number, line.given.clone()?))).collect();
-    let points = bodies.iter().zip(&moved).filter(|(body, _)| body.more > 0);
-    let points = points.map(|(body, moved)| {
-        let tail = |points: &Vec<Point>| points[points.len() - body.more..].to_vec();
-        (body.name.clone(), moved.frames.iter().map(tail).collect())
-    });
-    let report = Reshaped {
-        given: given.collect(),
-        notes: sunk::notes((&bodies, &moved), parts, &motion, footage.first)
-            .into_iter()
-            .chain(of_strokes(&free))
-            .collect(),
-        strokes: free,
-        rigid,
-        still: motion.still.clone(),
-        mirrored: motion.mirrored,
-        sides: motion.sides,
-        points: points.collect(),
-    };
+    let report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
     let placed = rebound(&set, &bindings, parts, rest);
     let loose: Vec<_> =
         loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths);
     document.set_limbs(&placed);
     Ok(report)
-}
-
-/// Says which strokes lie on no part.
-fn of_strokes(free: &[(usize, Given)]) -> Vec<String> {
-    let mut by_given: Vec<(&Given, Vec<FrameNumber>)> = Vec::new();
-    for (number, given) in free {
-        let number = FrameNumber::try_from(*number).unwrap_or(FrameNumber::MAX);
-        match by_given.iter_mut().find(|(known, _)| *known == given) {
-            Some((_, numbers)) => numbers.push(number),
-            None => by_given.push((given, vec![number])),
-        }
-    }
-    let said = |(given, numbers): &(&Given, Vec<FrameNumber>)| match numbers[..] {
-        [one] => format!("stroke {one} of the drawing: it lies on no part, so {given}"),
-        _ => format!("strokes {} of the drawing: they lie on no part; of each of them: {given}", runs(numbers)),
-    };
-    by_given.iter().map(said).collect()
 }
 
 /// Gives the bodies the points that are asked for.
