@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x7681a613db39e5d4
+HEADER_HASH = 0x16b1e1c3d325dc5c
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -141,6 +141,11 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
         (1, "folder_length", ctypes.c_size_t),
         (3, "clips_length", ctypes.c_size_t),
         (5, "source_length", ctypes.c_size_t),
+    ),
+    "rototoon_library_add_files": (
+        (1, "folder_length", ctypes.c_size_t),
+        (3, "files_length", ctypes.c_size_t),
+        (5, "options_length", ctypes.c_size_t),
     ),
     "rototoon_library_find": (
         (1, "folder_length", ctypes.c_size_t),
@@ -600,6 +605,17 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_size_t,
         ctypes.c_void_p,
         ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_library_add_files.restype = ctypes.c_int32
+    library.rototoon_library_add_files.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
         ctypes.c_void_p,
     ]
     library.rototoon_library_find.restype = ctypes.c_int32
