@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass
+from typing import Any
 
 from .errors import Problem
 
@@ -18,7 +19,7 @@ MOVIES = {".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".og
 
 @dataclass(frozen=True)
 class Sequence:
-    """A sequence of picture files without a gap."""
+    """A sequence of picture files."""
 
     pattern: str
     first: int
@@ -26,6 +27,8 @@ class Sequence:
     picked: int
     missing: int = 0
     """Number of pictures of the same name beyond a gap. They are left out."""
+    held: int = 0
+    """Number of frames without a file between the first and the last one. They show the picture before."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +48,8 @@ def is_movie(path: str) -> bool:
     return os.path.splitext(path)[1].lower() in MOVIES
 
 
-def sequence_around(path: str) -> Sequence:
-    """The pictures around a picked file, up to the first gap. Their names differ only in the last number."""
+def sequence_around(path: str, hold_gaps: bool = False) -> Sequence:
+    """The pictures around a picked file, up to the first gap, or all with `hold_gaps`. Their names differ only in the last number."""
     folder, name = os.path.split(os.path.abspath(path))
     if not os.path.isfile(path):
         raise Problem(f"No file {path}: it was moved or renamed")
@@ -65,15 +68,22 @@ def sequence_around(path: str) -> Sequence:
         numbers = {n: text for n, text in numbers.items() if text == str(n)}
     token = f"%0{len(digits)}d" if padded else "%d"
     picked = int(digits)
+    first, last = (min(numbers), max(numbers)) if hold_gaps else _without_gap(numbers, picked)
+    if "%" in head + tail or "%" in folder:
+        raise Problem(f"{folder}/{name}: a name with % in it cannot be used; rename it")
+    pattern = os.path.join(folder, head + token + tail)
+    apart = len(numbers) - (last - first + 1)
+    return Sequence(pattern, first, last, picked, max(apart, 0), max(-apart, 0))
+
+
+def _without_gap(numbers: dict[int, str], picked: int) -> tuple[int, int]:
+    """The first and the last number around the picked one, up to a gap on either side."""
     first = last = picked
     while first - 1 in numbers:
         first -= 1
     while last + 1 in numbers:
         last += 1
-    if "%" in head + tail or "%" in folder:
-        raise Problem(f"{folder}/{name}: a name with % in it cannot be used; rename it")
-    pattern = os.path.join(folder, head + token + tail)
-    return Sequence(pattern, first, last, picked, len(numbers) - (last - first + 1))
+    return first, last
 
 
 def _numbers(folder: str, head: str, tail: str) -> dict[int, str]:
@@ -114,7 +124,8 @@ def pattern_of(ob) -> str:
     if settings.pattern.startswith("//") and not bpy.data.filepath and _file_of(ob) is None:
         raise Problem(f"The footage {settings.pattern} is relative to a file that is not saved: choose it again")
     pattern = absolute(ob, settings.pattern)
-    for number in (settings.first, settings.last):
+    # Where gaps are held, the last frame may show an earlier picture.
+    for number in (settings.first,) if settings.hold_gaps else (settings.first, settings.last):
         path = picture(pattern, number)
         if not os.path.isfile(path):
             if settings.movie:
@@ -139,6 +150,24 @@ def _of_movie(path: str) -> str:
     if frames is None:
         raise Problem(f"The frames of {path} are not in the cache of this machine: choose the movie again in the panel Footage")
     return frames.pattern
+
+
+HELD = "held"
+"""What the field `gaps` of a document's footage says if a frame without a file shows the picture before it."""
+
+
+def fields(ob, pattern: str) -> dict[str, Any]:
+    """An object's footage in the form of a document."""
+    settings = ob.rototoon
+    found = {
+        "pattern": pattern,
+        "first": settings.first,
+        "last": settings.last,
+        "fps": rate(ob),
+        "width": settings.width,
+        "height": settings.height,
+    }
+    return {**found, "gaps": HELD} if settings.hold_gaps else found
 
 
 def rate(ob) -> float:

@@ -31,6 +31,8 @@ class Shot:
     fps: float
     frame_of_first: int
     movie: str = ""
+    hold_gaps: bool = False
+    """Whether a frame without a file shows the picture before it."""
 
 
 def assign(ob, shot: Shot) -> None:
@@ -41,6 +43,7 @@ def assign(ob, shot: Shot) -> None:
     settings.first, settings.last = shot.first, shot.last
     settings.width, settings.height = shot.width, shot.height
     settings.fps = shot.fps
+    settings.hold_gaps = shot.hold_gaps
     settings.frame_offset = shot.frame_of_first - shot.first
 
 

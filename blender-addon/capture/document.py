@@ -57,14 +57,7 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
     corrected = corrections.detect(found, mapper, settles=settings.moved_line == "SETTLE")
     yield 0.0
     document = kept.fields(settings.extra)
-    known = {
-        "pattern": pattern,
-        "first": settings.first,
-        "last": settings.last,
-        "fps": footage.rate(ob),
-        "width": settings.width,
-        "height": settings.height,
-    }
+    known = footage.fields(ob, pattern)
     document.update({"rototoon": VERSION, "footage": kept.fields(document.get("footage")) | known})
     document["parts"] = [
         _part(part, mapper, corrected[part.number], settings.frame_offset)

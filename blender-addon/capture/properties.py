@@ -105,6 +105,11 @@ class CaptureSettings:
     frame_offset: bpy.props.IntProperty(
         name="Frame Offset", description="The scene shows picture n on frame n + offset", default=0
     )
+    hold_gaps: bpy.props.BoolProperty(
+        name="Hold Gaps",
+        description="A frame without a file shows the picture before it, as in scans that are numbered by their exposure",
+        default=False,
+    )
     movie: bpy.props.StringProperty(name="Movie", description="The movie from which the pictures come", default="")
     plane: bpy.props.EnumProperty(name="Seen Through", description="What shows the footage in the scene", items=PLANES)
     camera: bpy.props.PointerProperty(

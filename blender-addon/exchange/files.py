@@ -11,10 +11,11 @@ import numpy as np
 from rototoon import LibraryError, RototoonError, Session
 
 from ..blender.errors import Problem
+from ..blender.footage import HELD
 from ..capture.document import VERSION
 from .fields import wrong
 
-_FOOTAGE = {"pattern", "first", "last", "fps", "width", "height"}
+_FOOTAGE = {"pattern", "first", "last", "fps", "width", "height", "gaps"}
 _PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
 _TOP = {"rototoon", "footage", "parts", "drawings", "pairs", "traced", "in_betweens", "matches", "fills", "filled"}
 
@@ -75,6 +76,8 @@ def check(document: Any) -> None:
     for name in ("first", "last", "width", "height"):
         if not isinstance(shot.get(name), int):
             raise wrong(f"footage.{name}", shot.get(name), "a whole number")
+    if shot.get("gaps", HELD) != HELD:
+        raise wrong("footage.gaps", shot["gaps"], f'"{HELD}", or no such field')
     if not isinstance(document.get("parts", []), list):
         raise wrong("parts", document["parts"], "a list of parts")
     names = set()

@@ -14,7 +14,7 @@ import numpy as np
 from rototoon import RototoonError, Session
 from rototoon.fills import Filled
 
-from ..blender import guard
+from ..blender import footage, guard
 from ..blender.errors import Problem
 from ..lines import plan as lines_plan
 from ..paint import filling, sheets
@@ -40,13 +40,12 @@ def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:
     """Takes the painted regions of a document into an object, in steps. Returns a `filling.Done`. Raises a `Problem` if the artist's shapes are
     others than those that were sent."""
     guard.need(ob)
-    collecting.need_same_footage(ob, lines_plan.footage_of(ob, ""), result["footage"])
+    collecting.need_same_footage(ob, footage.fields(ob, ""), result["footage"])
     plan = pl.make(ob, pl.layer_name(ob), *lines_plan.film(ob))
     if not _same(plan.document["fills"], result.get("fills", ())):
         raise Problem("its shapes were changed since they were sent, so its paint stays as it is; press Fill Drawings")
     found = _filled(result)
     numbers = found.frames.tolist()
-    plan.held = {frame + plan.offset for before, frame in zip(numbers, numbers[1:]) if _repeats(found, before, frame)}
     missing = set(range(plan.pictures[0], plan.pictures[1] + 1)).difference(numbers)
     return (yield from filling.finishing(ob, plan, replace(found, unrelated=sorted(missing))))
 
@@ -71,12 +70,3 @@ def _same(now: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]])
 def _alike(one: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> bool:
     rows = [np.array([[*click["at"], *click["colour"]] for click in clicks], np.float64) for clicks in (one, other)]
     return rows[0].shape == rows[1].shape and bool((np.abs(rows[0] - rows[1]) <= SAME).all())
-
-
-def _repeats(found: Filled, before: int, frame: int) -> bool:
-    """Whether a picture has the regions of the one before it: such a frame holds the drawing."""
-    return frame == before + 1 and _regions(found, before) == _regions(found, frame)
-
-
-def _regions(found: Filled, frame: int) -> list[tuple]:
-    return [(each.track, each.colour, *(loop.tobytes() for loop in (each.outline, *each.holes))) for each in found.on(frame)]

@@ -17,7 +17,7 @@ from rototoon import RototoonError, Session
 from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import footage, guard
 from ..blender.errors import Problem
 from ..common.wording import counted
 from ..lines import choosing, tracing
@@ -96,7 +96,7 @@ def find_held(results: Sequence[collecting.Result], patterns: Mapping[str, str],
             return
         if result.lines and result.lines["hold"] and result.document is not None and result.object in patterns:
             shown = result.document["footage"]
-            result.held = lines_plan.held_pictures(patterns[result.object], shown["first"], shown["last"], 0)
+            result.held = lines_plan.held_pictures({**shown, "pattern": patterns[result.object]}, shown["first"], shown["last"], 0)
 
 
 def taking(ob, result: collecting.Result) -> Iterator[float]:
@@ -106,7 +106,7 @@ def taking(ob, result: collecting.Result) -> Iterator[float]:
     lines, document = result.lines, result.document
     if not document.get("traced"):
         raise Problem("its lines have no result yet: start the batch again")
-    collecting.need_same_footage(ob, lines_plan.footage_of(ob, ""), document["footage"], ("width", "height", "first", "last"))
+    collecting.need_same_footage(ob, footage.fields(ob, ""), document["footage"], ("width", "height", "first", "last"))
     _need_lines(ob, lines["layers"])
     # A layer from which the artist has deleted all drawings differs from what was sent. Without new strokes it would be refused as empty.
     plan = plan_of(ob, lines["layers"], *lines_plan.film(ob), new=True)
@@ -114,7 +114,7 @@ def taking(ob, result: collecting.Result) -> Iterator[float]:
     if len(now) != 1 or not _same(now[0], before):
         button = "Trace Drawing" if ob.rototoon.lines_layer in lines["layers"] else "Carry Strokes"
         raise Problem(f"its drawings on {_named(lines['layers'])} were changed since they were sent, so its lines stay as they are; press {button}")
-    plan.new = lines["new"]
+    plan.new, plan.hold = lines["new"], bool(lines["hold"])
     plan.held = {picture + plan.offset for picture in result.held}
     traced = _traced(result)
     return (yield from tracing.finishing(ob, plan, [traced], lines["home"]))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -103,21 +103,26 @@ def of_picture(layer: dr.Layer, frame: int, path: str, size: tuple[int, int], ma
 def find_held(plan: Plan) -> None:
     """Finds the pictures that are the same file as the one before, as in films on twos. Uses no Blender."""
     if plan.hold and plan.groups:
-        pattern = plan.groups[0].document["footage"]["pattern"]
-        plan.held |= held_pictures(pattern, plan.first, plan.last, plan.offset)
+        plan.held |= held_pictures(plan.groups[0].document["footage"], plan.first, plan.last, plan.offset)
 
 
-def held_pictures(pattern: str, first: int, last: int, offset: int) -> set[int]:
-    """The scene frames after the first whose picture is the same file as the one before. The scene shows picture n on frame n + offset."""
+def held_pictures(shown: Mapping[str, Any], first: int, last: int, offset: int) -> set[int]:
+    """The scene frames after the first whose picture is the same file as the one before. The scene shows picture n on frame n + offset.
+
+    `shown` is the footage in the form of a document. It may say that a frame without a file holds the picture before it.
+    """
     held: set[int] = set()
     before: tuple[int, bytes] | None = None
     for frame in range(first, last + 1):
-        path = pattern % (frame - offset)
+        path = footage.picture(shown["pattern"], frame - offset)
         try:
             size = os.path.getsize(path)
             with open(path, "rb") as file:
                 now = size, hashlib.file_digest(file, "blake2b").digest()
-        except OSError:
+        except OSError as error:
+            if isinstance(error, FileNotFoundError) and shown.get("gaps") == footage.HELD:
+                held |= {frame} - {first}
+                continue
             # The library says which picture is missing.
             return held
         if now == before:
@@ -156,7 +161,7 @@ def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last
         if strokes:
             seeds[frame] = seed
             drawn.append({"frame": frame - offset, "strokes": strokes})
-    document = {"rototoon": VERSION, "footage": footage_of(ob, pattern), "parts": [], "drawings": drawn}
+    document = {"rototoon": VERSION, "footage": footage.fields(ob, pattern), "parts": [], "drawings": drawn}
     return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper)
 
 
@@ -169,19 +174,6 @@ def _points(layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:
 
 def _content(layer: dr.Layer, frame: int) -> st.Content:
     return layer.keys.get(frame) or layer.made.get(frame) or dr.EMPTY
-
-
-def footage_of(ob, pattern: str) -> dict[str, Any]:
-    """An object's footage in the form of a document."""
-    settings = ob.rototoon
-    return {
-        "pattern": pattern,
-        "first": settings.first,
-        "last": settings.last,
-        "fps": footage.rate(ob),
-        "width": settings.width,
-        "height": settings.height,
-    }
 
 
 def _drawing(ob, layers: list[dr.Layer], frame: int, mapper: Mapper) -> tuple[Seed, list[dict[str, Any]]]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -45,7 +46,7 @@ def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...],
     if not low <= frame <= high:
         raise Problem(f"There is no picture on frame {frame}: the footage is on frames {low} to {high}")
     drawn = sheets.read(ob, name)
-    frame = _shown(pattern, drawn, frame, ob.rototoon.frame_offset)
+    frame = _shown(footage.fields(ob, pattern), drawn, frame, ob.rototoon.frame_offset)
     mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
     sheet = drawn.get(frame) or sheets.Sheet(st.of_rows(painted.rows(ob, [], mapping, painted.Palette())), np.zeros(0, bool), gp.KEYFRAME)
     own = clicks.of(ob, sheet, mapping, ob.rototoon.height)
@@ -73,12 +74,12 @@ def take_back(ob, before: Before) -> None:
     ob.data.update_tag()
 
 
-def _shown(pattern: str, drawn: dict[int, sheets.Sheet], frame: int, offset: int) -> int:
+def _shown(pictures: dict[str, Any], drawn: dict[int, sheets.Sheet], frame: int, offset: int) -> int:
     """The frame of the drawing that is painted: the one that is shown, if its picture is the same."""
     shown = max((each for each in drawn if each <= frame), default=frame)
     if shown == frame or shown < frame - MOST_HELD:
         return frame
-    held = lines_plan.held_pictures(pattern, shown, frame, offset)
+    held = lines_plan.held_pictures(pictures, shown, frame, offset)
     return shown if held.issuperset(range(shown + 1, frame + 1)) else frame
 
 
@@ -89,7 +90,7 @@ MOST_HELD = 100
 def _regions(ob, pattern: str, frame: int, asked: list[clicks.Click], sensitivity: float) -> list[painted.Region]:
     number = frame - ob.rototoon.frame_offset
     fills = [{"frame": number, "regions": [{"at": list(click.at), "colour": list(click.colour)} for click in asked]}]
-    shown = lines_plan.footage_of(ob, pattern)
+    shown = footage.fields(ob, pattern)
     document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
     session = filling.make(document, os.path.dirname(pattern))
     try:

@@ -55,7 +55,7 @@ def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
 
     def run(progress) -> Filled:
         if plan.hold:
-            plan.held = lines_plan.held_pictures(plan.document["footage"]["pattern"], plan.first, plan.last, plan.offset)
+            plan.held = lines_plan.held_pictures(plan.document["footage"], plan.first, plan.last, plan.offset)
         session = make(plan.document, plan.folder)
         try:
             chosen = {"confidence": options.confidence, "threads": options.threads}
@@ -80,7 +80,7 @@ def finishing(ob, plan: pl.Plan, found: Filled) -> Iterator[float]:
     yield 0.0
     done = _done(plan, found)
     wanted = _by_frame(plan, found, drawn, done)
-    _hold(layer, plan, wanted, drawn)
+    _hold(layer, plan, wanted, drawn, repeats(found) if plan.hold else set())
     gp.make_frames(layer, sorted(wanted), gp.GENERATED)
     handles = gp.drawings(layer)
     for count, (frame, regions) in enumerate(sorted(wanted.items()), 1):
@@ -136,12 +136,23 @@ def _by_frame(plan: pl.Plan, found: Filled, drawn, done: Done) -> dict[int, list
     return wanted
 
 
-def _hold(layer, plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn) -> None:
-    """Takes frames out that hold the drawing before them, since the picture is the same."""
+def repeats(found: Filled) -> set[int]:
+    """The pictures that have the regions of the picture before, to the last digit: the library found that they show the same drawing."""
+
+    def regions(number: int) -> list[tuple]:
+        return [(each.track, each.colour, *(loop.tobytes() for loop in (each.outline, *each.holes))) for each in found.on(number)]
+
+    numbers = found.frames.tolist()
+    return {now for before, now in zip(numbers, numbers[1:]) if now == before + 1 and regions(before) == regions(now)}
+
+
+def _hold(layer, plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn, repeated: set[int]) -> None:
+    """Takes frames out that hold the drawing before them, since the picture or the drawing in it is the same."""
     if not plan.mapper.still:
         return
     own = {frame for frame, sheet in drawn.items() if len(sheet.own)}
-    held = {frame for frame in plan.held & wanted.keys() if frame not in own}
+    held = plan.held | {number + plan.offset for number in repeated}
+    held = {frame for frame in held & wanted.keys() if frame not in own}
     gp.remove_frames(layer, sorted(held & drawn.keys()))
     for frame in held:
         del wanted[frame]

@@ -82,7 +82,7 @@ def make(ob, name: str, first: int, last: int) -> Plan:
     if not plan.clicks:
         raise Problem(_why_nothing(name, drawn, low, high))
     fills = [{"frame": frame - offset, "regions": _regions(own)} for frame, own in sorted(plan.clicks.items())]
-    shown = lines_plan.footage_of(ob, pattern)
+    shown = footage.fields(ob, pattern)
     plan.document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
     if (first, last) != (low, high):
         # The library does not give the numbers of other frames to regions of another colour.

@@ -50,8 +50,7 @@ def pictures_of(ob) -> Pictures | None:
     if not settings.pattern:
         return None
     pattern = footage.pattern_of(ob)
-    written = {name: getattr(settings, name) for name in ("first", "last", "fps", "width", "height")}
-    return Pictures({"pattern": pattern, **written}, os.path.dirname(pattern), settings.frame_offset)
+    return Pictures(footage.fields(ob, pattern), os.path.dirname(pattern), settings.frame_offset)
 
 
 def to_pixels(ob, plan: tweening.Plan, pictures: Pictures | None) -> ToPixels | None:

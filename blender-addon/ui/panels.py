@@ -40,6 +40,7 @@ class ROTOTOON_PT_footage(Panel, bpy.types.Panel):
         row = column.row(align=True)
         row.prop(settings, "first", text="First, Last")
         row.prop(settings, "last", text="")
+        column.prop(settings, "hold_gaps")
         column.prop(settings, "frame_offset")
         column.prop(settings, "plane")
         column.prop(settings, "reference" if settings.plane == "REFERENCE" else "camera")

@@ -45,7 +45,7 @@
 //!     std::fs::write(folder.path().join(format!("{frame:02}.png")), encode::colours(&picture, Format::Png)?)?;
 //! }
 //!
-//! let footage = Footage { pattern: "%02d.png".into(), first: 0, last: 8, fps: 12.0, width: 96, height: 72 };
+//! let footage = Footage { pattern: "%02d.png".into(), first: 0, last: 8, fps: 12.0, width: 96, height: 72, held: false };
 //! let corners = [(0.0, 0.0), (16.0, 0.0), (16.0, 16.0), (0.0, 16.0)];
 //! let square = |frame| corners.map(|(x, y)| corner(frame) + Point::new(x, y));
 //! let keys = [0, 8].map(|frame| (frame, square(frame).to_vec())).into();

@@ -34,6 +34,7 @@ pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
+pub use gaps::without_file;
 pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use render::render;

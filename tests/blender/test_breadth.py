@@ -152,7 +152,48 @@ def test_a_gap_in_the_sequence_is_a_warning(addon, fake, tmp_path):
     bpy.ops.rototoon.setup(filepath=str(tmp_path / "frames/shot_001.png"))
     assert (bpy.context.object.rototoon.first, bpy.context.object.rototoon.last) == (1, 5)
     (report,) = reports.take()
-    assert report.kind == "WARNING" and report.warnings == ("3 pictures beyond a gap are left out",)
+    assert report.kind == "WARNING" and report.warnings == ("3 pictures beyond a gap are left out: Hold Gaps takes them in",)
+
+
+def test_missing_numbers_hold_the_picture_before_them(addon, fake, tmp_path):
+    shots.draw_sequence(tmp_path / "frames")
+    for number in (2, 3, 6):
+        (tmp_path / f"frames/shot_{number:03}.png").unlink()
+    reports = addon("common.reports")
+    reports.take()
+    bpy.ops.rototoon.setup(filepath=str(tmp_path / "frames/shot_004.png"), hold_gaps=True)
+    ob = bpy.context.object
+    assert (ob.rototoon.first, ob.rototoon.last, ob.rototoon.hold_gaps) == (1, 9, True)
+    (report,) = reports.take()
+    assert report.warnings == ("3 frames without a file show the picture before",)
+    plan, footage = addon("lines.plan"), addon("blender.footage")
+    shown = footage.fields(ob, footage.pattern_of(ob))
+    assert shown["gaps"] == "held"
+    assert plan.held_pictures(shown, 1, 9, 0) == {2, 3, 6}
+    assert plan.held_pictures({**shown, "gaps": None}, 1, 9, 0) == set()
+    # A hold at the end has no file either.
+    ob.rototoon.last = 12
+    assert footage.pattern_of(ob)
+    ob.rototoon.hold_gaps = False
+    with pytest.raises(addon("blender.errors").Problem, match="No picture"):
+        footage.pattern_of(ob)
+
+
+def test_a_document_keeps_that_gaps_are_held(addon, fake, tmp_path):
+    shots.draw_sequence(tmp_path / "frames")
+    (tmp_path / "frames/shot_006.png").unlink()
+    bpy.ops.rototoon.setup(filepath=str(tmp_path / "frames/shot_001.png"), hold_gaps=True)
+    addon("scripting").set_key(bpy.context.object, 1, {"square": shots.square(0)})
+    path = tmp_path / "project.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert document["footage"]["gaps"] == "held"
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    assert bpy.context.object.rototoon.hold_gaps and bpy.context.object.rototoon.extra in ("", "{}")
+    document["footage"]["gaps"] = "looped"
+    path.write_text(json.dumps(document))
+    with pytest.raises(RuntimeError, match='footage.gaps: found "looped", expected "held"'):
+        bpy.ops.rototoon.import_document(filepath=str(path))
 
 
 def test_scene_rate_does_not_resample_the_pictures(addon, fake, tmp_path):

@@ -168,7 +168,8 @@ mod tests {
     fn still() -> (Scene, Truth) {
         let keys = BTreeMap::from([0, LAST].map(|frame| (frame, square())));
         let part = |name: &str| Part { name: name.into(), closed: true, keys: keys.clone(), ..Part::default() };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: 960, height: 540 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: 960, height: 540, held: false };
         let every: BTreeMap<_, _> = (0..=LAST).map(|frame| (frame, square())).collect();
         let scored = (0..=LAST).map(|frame| (frame, "1111".into())).collect();
         let truth = TruePart { points: every.clone(), contour: every, scored, ..TruePart::default() };

@@ -115,6 +115,7 @@ impl Puppet {
             fps: 24.0,
             width: self.width,
             height: self.height,
+            held: false,
         };
         Scene { footage, parts: (0..self.parts).map(part).collect() }
     }

@@ -121,6 +121,27 @@ fn impossible_footage_is_refused() {
 }
 
 #[test]
+fn held_gaps_of_the_footage_are_read_written_and_checked() {
+    let with = |gaps: &str| with_footage(&FOOTAGE.replace('}', &format!(r#", {gaps}}}"#)));
+    let document = parse(&with(r#""gaps": "held""#)).unwrap();
+    assert!(document.scene.footage.held && document.misspelt().is_empty());
+    let again = parse(&document.to_json()).unwrap();
+    assert!(again.scene.footage.held && again.to_json() == document.to_json());
+    let mut open = parse(&with_footage(FOOTAGE)).unwrap();
+    assert!(!open.scene.footage.held && !open.to_json().contains("gaps"), "{}", open.to_json());
+    open.scene.footage.held = true;
+    assert!(parse(&open.to_json()).unwrap().scene.footage.held);
+    let mut closed = document;
+    closed.scene.footage.held = false;
+    assert!(!closed.to_json().contains("gaps"), "{}", closed.to_json());
+    assert_eq!(
+        errors(&with(r#""gaps": "hold""#)),
+        [r#"p.json: footage.gaps: found "hold", expected "held", or no such field"#]
+    );
+    assert_eq!(errors(&with(r#""gaps": true"#)), [r#"p.json: footage.gaps: found true, expected text"#]);
+}
+
+#[test]
 fn a_later_version_is_refused_and_named() {
     let later = r#"{"parts": "something new", "rototoon": 2, "footage": 7}"#;
     let message = parse(later).unwrap_err().to_string();

@@ -17,11 +17,18 @@ from ...common.wording import counted
 class FootageOperator(Long):
     """`source(context)` returns the source of the footage. `apply(context, shot)` uses the footage and returns a message."""
 
+    hold_gaps: bpy.props.BoolProperty(
+        name="Hold Gaps",
+        description="Take the pictures beyond a gap too: a missing number shows the picture before it, "
+        "as in scans that are numbered by their exposure (A0001, A0003, A0005)",
+        default=False,
+    )
+
     def begin(self, context):
         """Checks the source. Only a movie that is not in the cache takes long."""
         self._source = self.source(context)
         if not self._source.movie:
-            self._sequence = footage.sequence_around(self._source.path)
+            self._sequence = footage.sequence_around(self._source.path, self.hold_gaps)
             return jobs.Stepper(iter(()), "")
         if not os.path.isfile(self._source.path):
             raise Problem(f"No file {self._source.path}: it was moved or renamed")
@@ -56,9 +63,18 @@ class FootageOperator(Long):
         width, height = footage.size_of(footage.picture(sequence.pattern, sequence.picked))
         start = footage.first_frame(self._source, sequence, scene.frame_start)
         fps = scene.render.fps / scene.render.fps_base
-        shot = stage.Shot(sequence.pattern, sequence.first, sequence.last, width, height, fps, start)
-        missing = sequence.missing
-        return shot, f"{counted(missing, 'picture')} beyond a gap {'is' if missing == 1 else 'are'} left out" if missing else ""
+        shot = stage.Shot(
+            sequence.pattern, sequence.first, sequence.last, width, height, fps, start, hold_gaps=self.hold_gaps
+        )
+        return shot, _said_of_gaps(sequence)
+
+
+def _said_of_gaps(sequence: footage.Sequence) -> str:
+    """A note about pictures beyond a gap, with the way to have them, or about frames that hold a picture."""
+    if sequence.missing:
+        verb, them = ("is", "it") if sequence.missing == 1 else ("are", "them")
+        return f"{counted(sequence.missing, 'picture')} beyond a gap {verb} left out: Hold Gaps takes {them} in"
+    return f"{counted(sequence.held, 'frame')} without a file {'shows' if sequence.held == 1 else 'show'} the picture before" if sequence.held else ""
 
 
 def used_folders() -> set[str]:

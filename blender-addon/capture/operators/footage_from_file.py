@@ -55,6 +55,7 @@ class FilePicker:
         row = self.layout.row()
         row.active = not self.at_scene_start
         row.prop(self, "frame")
+        self.layout.prop(self, "hold_gaps")
 
 
 class ROTOTOON_OT_footage_from_file(FilePicker, FootageOperator, OnDrawing, bpy.types.Operator):

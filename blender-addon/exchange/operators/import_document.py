@@ -90,7 +90,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             raise Problem(f"No picture {first}: the document's footage is missing")
         start = shot["first"] if self.keep_numbers else context.scene.frame_start
         fps = float(shot.get("fps", 24.0))
-        return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start)
+        return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start, hold_gaps="gaps" in shot)
 
 
 CLASSES = (ROTOTOON_OT_import_document,)

@@ -169,7 +169,7 @@ mod tests {
 
     /// A scene with one part of a share of the picture.
     fn scene(width: usize, height: usize, frames: i32, share: f64) -> Scene {
-        let footage = Footage { pattern: String::new(), first: 1, last: frames, fps: 24.0, width, height };
+        let footage = Footage { pattern: String::new(), first: 1, last: frames, fps: 24.0, width, height, held: false };
         let (right, bottom) = (width as f64, height as f64 * share);
         let corners = [(0.0, 0.0), (right, 0.0), (right, bottom), (0.0, bottom)].map(|(x, y)| Point::new(x, y));
         let part = Part { keys: [(1, corners.to_vec())].into(), ..Part::default() };

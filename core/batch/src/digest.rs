@@ -76,7 +76,8 @@ mod tests {
     #[test]
     fn frames_that_change_or_go_change_the_hash() {
         let folder = tempfile::tempdir().unwrap();
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 2, fps: 24.0, width: 4, height: 4 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 2, fps: 24.0, width: 4, height: 4, held: false };
         let mut seen = Vec::new();
         for (name, text) in [("0.png", "a"), ("1.png", "a"), ("1.png", "b"), ("2.png", "c"), ("3.png", "d")] {
             std::fs::write(folder.path().join(name), text).unwrap();

@@ -143,7 +143,8 @@ mod tests {
     use rototoon::geometry::Point;
 
     fn scene(parts: Vec<Part>) -> Scene {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         Scene { footage, parts }
     }
 

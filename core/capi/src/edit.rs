@@ -289,7 +289,8 @@ mod tests {
     const KEY: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
     fn scene() -> Scene {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 25.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 25.0, width: 8, height: 8, held: false };
         let points = vec![Point::new(0.0, 0.0), Point::new(4.0, 0.0)];
         let keys = [(0, points.clone()), (8, points.clone())].into();
         let tracks = (0..=8).map(|frame| (frame, points.clone())).collect();

@@ -32,6 +32,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if let Some(outside) = outside(&document.scene.footage.pattern) {
         line("note", &format!("{}: footage.pattern: {outside}", path.display()));
     }
+    let held = pipeline::without_file(&document, &home)?;
+    if held > 0 {
+        let (first, last) = (i64::from(document.scene.footage.first), i64::from(document.scene.footage.last));
+        let told = format!("{held} of {} frames have no file and show that of the frame before", last - first + 1);
+        line("note", &format!("{}: footage.gaps: {told}", path.display()));
+    }
     for problem in problems.iter() {
         let kind = if problem.severity == Severity::Error { "error" } else { "warning" };
         line(kind, &format!("{}: {problem}", path.display()));

@@ -103,7 +103,15 @@ mod tests {
             fs::write(at(name), name).unwrap();
         }
         fs::hard_link(at("frames/f_2.png"), at("hard.png")).unwrap();
-        let footage = Footage { pattern: "frames/f_%d.png".into(), first: 1, last: 5, fps: 12.0, width: 1, height: 1 };
+        let footage = Footage {
+            pattern: "frames/f_%d.png".into(),
+            first: 1,
+            last: 5,
+            fps: 12.0,
+            width: 1,
+            height: 1,
+            held: false,
+        };
         let inputs = Inputs::default().file(&at("clips.json")).footage(&footage, folder.path());
         let refused = ["clips.json", "frames/../clips.json", "frames/f_1.png", "frames/f_2.png", "hard.png"];
         for name in refused {

@@ -6,7 +6,7 @@
 use super::Document;
 use super::looks::{Curve, Shade};
 use super::problem::Problems;
-use super::schema::{Field, Layout, VERSION};
+use super::schema::{Field, GAPS, Layout, VERSION};
 use super::shape::{Context, Entries, Flag, Frame, FrameRange, List, Number, Pair, Seed, Shape, Step, Text, Whole};
 use super::validate;
 use rototoon_base::file;
@@ -263,7 +263,7 @@ impl<'de> Shape<'de> for FootageShape {
 
     fn object<A: MapAccess<'de>>(self, context: &mut Context, mut entries: A) -> Result<Option<Self::Value>, A::Error> {
         let (mut pattern, mut first, mut last) = (None, None, None);
-        let (mut fps, mut width, mut height) = (None, None, None);
+        let (mut fps, mut width, mut height, mut gaps) = (None, None, None, None);
         let mut fields = Vec::new();
         while let Some(name) = entries.next_key::<String>()? {
             if repeated(context, &mut entries, &fields, &name)? {
@@ -276,11 +276,12 @@ impl<'de> Shape<'de> for FootageShape {
                 "fps" => field(context, &mut entries, "fps", Number, &mut fps)?,
                 "width" => field(context, &mut entries, "width", Whole, &mut width)?,
                 "height" => field(context, &mut entries, "height", Whole, &mut height)?,
+                GAPS => field(context, &mut entries, GAPS, Text, &mut gaps)?,
                 _ => unknown(&mut entries, name)?,
             });
         }
         require(context, &fields, &super::schema::FOOTAGE);
-        let raw = validate::RawFootage { pattern, first, last, fps, width, height };
+        let raw = validate::RawFootage { pattern, first, last, fps, width, height, gaps };
         Ok(Some((raw.checked(|name, message| report(context, name, message)), fields)))
     }
 }

@@ -60,8 +60,15 @@ mod tests {
         fs::write(at("shot/frames/f_2.png"), "").unwrap();
         symlink("../../shot/p.json", at("desk/far/link.json")).unwrap();
         symlink("far/link.json", at("desk/again.json")).unwrap();
-        let footage =
-            |pattern: &str, first| Footage { pattern: pattern.into(), first, last: 5, fps: 12.0, width: 4, height: 4 };
+        let footage = |pattern: &str, first| Footage {
+            pattern: pattern.into(),
+            first,
+            last: 5,
+            fps: 12.0,
+            width: 4,
+            height: 4,
+            held: false,
+        };
         let relative = footage("frames/f_%d.png", 1);
         let of = |name: &str| folder_of(&at(name), &relative);
         assert_eq!(

@@ -7,7 +7,7 @@
 use super::output::{WriteError, write_whole};
 use super::path::slashed;
 use super::problem::Problems;
-use super::schema::{FOOTAGE, Field, PART, TOP, completed};
+use super::schema::{FOOTAGE, Field, GAPS, HELD, PART, TOP, completed};
 use super::{Document, validate};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part};
@@ -65,9 +65,12 @@ impl Document {
     }
 
     fn footage(&self, out: &mut String) {
-        let Footage { pattern, first, last, fps, width, height } = &self.scene.footage;
+        let Footage { pattern, first, last, fps, width, height, held } = &self.scene.footage;
+        let known = [&FOOTAGE[..], &[GAPS]].concat();
+        let mut fields = completed(&self.layout.footage, &known);
+        fields.retain(|field| *held || !matches!(field.as_ref(), Field::Known(GAPS)));
         *out += "{";
-        for (i, field) in completed(&self.layout.footage, &FOOTAGE).iter().enumerate() {
+        for (i, field) in fields.iter().enumerate() {
             begin(out, i, if i > 0 { " " } else { "" }, field.name());
             match field.as_ref() {
                 Field::Unknown { json, .. } => *out += json,
@@ -76,6 +79,7 @@ impl Document {
                 Field::Known("last") => number(out, f64::from(*last)),
                 Field::Known("fps") => number(out, *fps),
                 Field::Known("width") => number(out, *width as f64),
+                Field::Known(GAPS) => text(out, HELD),
                 Field::Known(_) => number(out, *height as f64),
             }
         }

@@ -31,8 +31,12 @@ pub const MAX_FRAME_NUMBER: i64 = 1_000_000_000;
 
 /// The known fields of the document, in the order of a new document.
 pub(super) const TOP: [&str; 3] = ["rototoon", "footage", "parts"];
-/// The fields of the footage.
+/// The required fields of the footage.
 pub(super) const FOOTAGE: [&str; 6] = ["pattern", "first", "last", "fps", "width", "height"];
+/// The field of the footage that may be left out.
+pub(super) const GAPS: &str = "gaps";
+/// The value of `gaps`: a frame without a file shows the one before it.
+pub(super) const HELD: &str = "held";
 /// The fields of a part.
 ///
 /// `wants_key` is written by tracking and left out if empty. It contains the frames on which a part with one key was

@@ -6,7 +6,7 @@
 
 use super::Document;
 use super::problem::Problems;
-use super::schema::{FOOTAGE, Field, PART, TOP};
+use super::schema::{FOOTAGE, Field, GAPS, PART, TOP};
 use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
 
@@ -34,7 +34,7 @@ impl Document {
         let mut problems = Problems::default();
         let top = [&TOP[..], &OTHERS].concat();
         warn("", &self.layout.top, &top, &mut problems);
-        warn("footage", &self.layout.footage, &FOOTAGE, &mut problems);
+        warn("footage", &self.layout.footage, &[&FOOTAGE[..], &[GAPS]].concat(), &mut problems);
         for (index, part) in self.scene.parts.iter().enumerate() {
             let fields = self.layout.parts.get(&part.name).map_or(&[][..], Vec::as_slice);
             warn(&part_place(index, Some(&part.name)), fields, &PART, &mut problems);

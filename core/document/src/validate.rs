@@ -5,7 +5,7 @@
 
 use super::direction::reversed;
 use super::problem::Problems;
-use super::schema::{MAX_COORDINATE, MAX_FEATHER, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
+use super::schema::{HELD, MAX_COORDINATE, MAX_FEATHER, MAX_FPS, MAX_FRAME_NUMBER, MAX_FRAMES, MAX_SIZE, MIN_FPS};
 use super::shape::part_place;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, FramePattern, Part, Scene};
@@ -21,6 +21,7 @@ pub fn problems(scene: &Scene) -> Problems {
         fps: Some(footage.fps),
         width: i64::try_from(footage.width).ok(),
         height: i64::try_from(footage.height).ok(),
+        gaps: footage.held.then(|| HELD.to_owned()),
     };
     let mut problems = Problems::default();
     raw.checked(|field, message| problems.error(format!("footage.{field}"), message));
@@ -36,6 +37,7 @@ pub(super) struct RawFootage {
     pub fps: Option<f64>,
     pub width: Option<i64>,
     pub height: Option<i64>,
+    pub gaps: Option<String>,
 }
 
 impl RawFootage {
@@ -68,6 +70,10 @@ impl RawFootage {
             }
             fits
         });
+        let gaps = self.gaps.as_deref();
+        if let Some(found) = gaps.filter(|gaps| *gaps != HELD) {
+            error("gaps", format!("found {found:?}, expected {HELD:?}, or no such field"));
+        }
         if let (Some(first), Some(last)) = (first, last) {
             if last < first {
                 error("last", format!("found {last}, expected at least the first frame, {first}"));
@@ -85,6 +91,7 @@ impl RawFootage {
             fps: fps?,
             width: usize::try_from(width?).ok()?,
             height: usize::try_from(height?).ok()?,
+            held: gaps == Some(HELD),
         })
     }
 }

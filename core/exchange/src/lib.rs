@@ -21,7 +21,7 @@
 //! let corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)];
 //! let square = |left: f64| corners.map(|(x, y)| Point::new(left + x, y)).to_vec();
 //! let keys = [(1, square(10.0)), (2, square(30.0))].into();
-//! let footage = Footage { pattern: "%d.png".into(), first: 1, last: 2, fps: 12.0, width: 64, height: 36 };
+//! let footage = Footage { pattern: "%d.png".into(), first: 1, last: 2, fps: 12.0, width: 64, height: 36, held: false };
 //! let part = Part { name: "box & lid".into(), closed: true, keys, ..Part::default() };
 //! let scene = Scene { footage, parts: vec![part] };
 //!

@@ -21,7 +21,8 @@ fn scene(tracked: &[FrameNumber], keys: &[FrameNumber], absent: &[[FrameNumber; 
         absent: absent.to_vec(),
         ..Part::default()
     };
-    let footage = Footage { pattern: "%d".into(), first: FIRST, last: FIRST + 9, fps: 12.5, width: 40, height: 30 };
+    let footage =
+        Footage { pattern: "%d".into(), first: FIRST, last: FIRST + 9, fps: 12.5, width: 40, height: 30, held: false };
     Scene { footage, parts: vec![part] }
 }
 

@@ -6,7 +6,7 @@ use rototoon_base::scene::Footage;
 use rototoon_exchange::import::{ImportError, Shapes, bvh, nuke::nuke, silhouette::silhouette, svg::svg};
 
 fn footage(last: i32) -> Footage {
-    Footage { pattern: "%d".into(), first: 0, last, fps: 25.0, width: 200, height: 100 }
+    Footage { pattern: "%d".into(), first: 0, last, fps: 25.0, width: 200, height: 100, held: false }
 }
 
 fn read(content: &str) -> Result<Shapes, ImportError> {

@@ -12,6 +12,7 @@
 mod backdrop;
 pub mod decode;
 mod error;
+mod holds;
 #[cfg(test)]
 mod hostile_files;
 mod jpeg;

@@ -5,11 +5,14 @@
 //! Decoding happens outside the lock, so several threads decode at the same time. Two threads that need the same
 //! picture at the same moment may both decode it. That costs time, but it cannot deadlock within a pool of threads.
 //!
+//! The footage may say that a frame without a file shows the one before it ([`super::holds`]).
+//!
 //! A program that takes several steps on one footage can keep it in the form of its files too: see [`super::store`].
 
 use super::backdrop;
 use super::decode::{Described, described, probe, raster, stored};
 use super::error::DecodeError;
+use super::holds::{Holds, is_there};
 use super::store;
 use super::stored::Stored;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -28,6 +31,7 @@ pub struct Sequence {
     folder: PathBuf,
     pattern: FramePattern,
     kept: Mutex<Kept>,
+    holds: Holds,
 }
 
 impl Sequence {
@@ -48,7 +52,7 @@ impl Sequence {
     pub fn keeping(footage: &Footage, folder: &Path, bytes: usize) -> Result<Self, PatternError> {
         let pattern = FramePattern::parse(&footage.pattern)?;
         let kept = Mutex::new(Kept { most: bytes, ..Kept::default() });
-        Ok(Self { footage: footage.clone(), folder: folder.into(), pattern, kept })
+        Ok(Self { footage: footage.clone(), folder: folder.into(), pattern, kept, holds: Holds::default() })
     }
 
     /// The footage.
@@ -61,8 +65,22 @@ impl Sequence {
         &self.folder
     }
 
-    /// The path of a frame's file.
+    /// The path of the file that a frame shows.
     pub fn path(&self, frame: FrameNumber) -> PathBuf {
+        self.own(self.shown(frame))
+    }
+
+    /// The frame whose file a frame shows: itself, or where gaps are held an earlier one.
+    pub fn shown(&self, frame: FrameNumber) -> FrameNumber {
+        let Footage { first, last, held, .. } = self.footage;
+        if !held || !(first..=last).contains(&frame) {
+            return frame;
+        }
+        self.holds.shown(frame, first, |at| is_there(&self.own(at)))
+    }
+
+    /// The path that the pattern gives a frame.
+    fn own(&self, frame: FrameNumber) -> PathBuf {
         self.folder.join(self.pattern.path(frame))
     }
 
@@ -80,6 +98,7 @@ impl Sequence {
     pub fn forget(&self) {
         let mut kept = self.locked();
         *kept = Kept { most: kept.most, ..Kept::default() };
+        self.holds.forget();
     }
 
     /// A thread that panicked cannot leave the cache inconsistent, because nothing panics between two changes of it.
@@ -157,9 +176,16 @@ impl Sequence {
         *self.locked().backdrop.get_or_insert(found)
     }
 
+    /// Whether a frame without a file could be held, if the footage said so.
+    fn may_hold(&self, frame: FrameNumber) -> bool {
+        let Footage { first, held, .. } = self.footage;
+        !held && frame > first && is_there(&self.own(first))
+    }
+
     fn named(&self, frame: FrameNumber, path: PathBuf, error: DecodeError) -> FrameError {
         let (width, height) = (self.footage.width, self.footage.height);
         match error {
+            DecodeError::Missing if self.may_hold(frame) => FrameError::Gap { frame, path },
             DecodeError::Missing => FrameError::Missing { frame, path },
             DecodeError::Unreadable(reason) => FrameError::Unreadable { frame, path, reason },
             DecodeError::WrongSize { width: found_width, height: found_height } => {
@@ -172,14 +198,15 @@ impl Sequence {
 impl FrameSource for Sequence {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
         self.inside(frame)?;
-        if let Some(picture) = self.locked().get(frame) {
+        let shown = self.shown(frame);
+        if let Some(picture) = self.locked().get(shown) {
             return Ok(picture);
         }
         let (stored, size) = self.stored(frame, size_of::<Colour>())?;
         let colours = stored.colours(self.backdrop(frame, &stored));
         let picture = raster(size, colours).map_err(|error| self.named(frame, self.path(frame), error))?;
         let picture = Arc::new(picture);
-        self.locked().put(frame, &picture);
+        self.locked().put(shown, &picture);
         Ok(picture)
     }
 }
@@ -236,7 +263,8 @@ mod tests {
             let picture = ImageBuffer::from_pixel(4, 3, Rgb([frame * 10; 3]));
             picture.save(folder.path().join(format!("f{frame:03}.png"))).unwrap();
         }
-        let footage = Footage { pattern: "f%03d.png".into(), first: 1, last: 6, fps: 25.0, width: 4, height: 3 };
+        let footage =
+            Footage { pattern: "f%03d.png".into(), first: 1, last: 6, fps: 25.0, width: 4, height: 3, held: false };
         (folder, footage)
     }
 
@@ -272,7 +300,7 @@ mod tests {
         assert!(Arc::ptr_eq(&again, &sequence.picture(3).unwrap()));
         sequence.forget();
         assert_eq!(held(&sequence), [0; 0]);
-        assert!(matches!(sequence.picture(3), Err(FrameError::Missing { frame: 3, .. })));
+        assert!(matches!(sequence.picture(3), Err(FrameError::Gap { frame: 3, .. })));
     }
 
     #[test]
@@ -287,7 +315,7 @@ mod tests {
             assert_eq!(sequence.probe(frame).err(), sequence.picture(frame).err(), "{frame}");
         }
         assert_eq!(sequence.picture(7), Err(FrameError::Outside { frame: 7, first: 1, last: 6 }));
-        assert_eq!(sequence.picture(2), Err(FrameError::Missing { frame: 2, path: at("f002.png") }));
+        assert_eq!(sequence.picture(2), Err(FrameError::Gap { frame: 2, path: at("f002.png") }));
         let unreadable = sequence.picture(3).unwrap_err();
         assert!(matches!(&unreadable, FrameError::Unreadable { frame: 3, path, .. } if *path == at("f003.png")));
         let path = at("f004.png");
@@ -295,6 +323,31 @@ mod tests {
         assert_eq!(sequence.picture(4), Err(wrong));
         assert_eq!(sequence.pictures(&[1, 3, 2]), Err(unreadable));
         assert!(Sequence::new(&Footage { pattern: "a.png".into(), ..footage }, folder.path()).is_err());
+    }
+
+    #[test]
+    fn held_gaps_show_the_nearest_earlier_file() {
+        let (folder, footage) = footage();
+        let at = |frame: i32| folder.path().join(format!("f{frame:03}.png"));
+        [1, 3, 4, 6].iter().for_each(|&frame| std::fs::remove_file(at(frame)).unwrap());
+        let sequence = Sequence::new(&Footage { held: true, ..footage.clone() }, folder.path()).unwrap();
+        let picture = |frame| sequence.picture(frame).unwrap();
+        assert!(Arc::ptr_eq(&picture(4), &picture(2)) && Arc::ptr_eq(&picture(3), &picture(2)));
+        assert!(Arc::ptr_eq(&picture(6), &picture(5)) && !Arc::ptr_eq(&picture(5), &picture(4)));
+        assert_eq!(held(&sequence), [2, 5]);
+        assert_eq!((sequence.path(4), sequence.shown(4), sequence.probe(4)), (at(2), 2, Ok(())));
+        assert!(sequence.layer(4).unwrap() == sequence.layer(2).unwrap());
+        assert_eq!(sequence.picture(1), Err(FrameError::Missing { frame: 1, path: at(1) }));
+        std::fs::write(at(4), "text").unwrap();
+        assert!(Arc::ptr_eq(&picture(4), &picture(2)), "found before it came");
+        sequence.forget();
+        assert!(matches!(sequence.picture(4), Err(FrameError::Unreadable { frame: 4, path, .. }) if path == at(4)));
+        let open = Sequence::new(&footage, folder.path()).unwrap();
+        assert_eq!(
+            open.picture(3),
+            Err(FrameError::Missing { frame: 3, path: at(3) }),
+            "the first file is missing too"
+        );
     }
 
     #[test]

@@ -162,7 +162,7 @@ mod tests {
 
     /// Discs in a ring. Each overlaps the next one, and all of them overlap in the middle.
     fn scene(count: usize) -> Scene {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 60, height: 50 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 60, height: 50, held: false };
         let part = |index: usize| {
             let turn = std::f64::consts::TAU / count as f64;
             let middle = Point::new(30.3, 24.6) + 10.0 * Point::from_angle(turn * index as f64);

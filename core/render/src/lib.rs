@@ -37,7 +37,7 @@
 //! use rototoon_render::matte;
 //!
 //! let rectangle = [(1.5, 1.5), (4.25, 1.5), (4.25, 4.0), (1.5, 4.0)].map(|(x, y)| Point::new(x, y)).to_vec();
-//! let footage = Footage { pattern: "%d.png".into(), first: 1, last: 1, fps: 24.0, width: 8, height: 6 };
+//! let footage = Footage { pattern: "%d.png".into(), first: 1, last: 1, fps: 24.0, width: 8, height: 6, held: false };
 //! let part = Part { name: "card".into(), closed: true, keys: [(1, rectangle)].into(), ..Part::default() };
 //! let matte = matte(&Scene { footage, parts: vec![part] }, 1, None);
 //!

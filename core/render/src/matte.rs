@@ -131,7 +131,8 @@ mod tests {
             feather: feather.into(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 0, fps: 24.0, width: 80, height: 40 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 0, fps: 24.0, width: 80, height: 40, held: false };
         let parts = vec![part("hard", 4.0, &[]), part("soft", 50.0, &[0.0, 8.0, 8.0, 0.0]), part("odd", 24.0, &[5.0])];
         let scene = Scene { footage, parts };
         let all = matte(&scene, 0, None);

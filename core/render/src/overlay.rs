@@ -193,7 +193,8 @@ mod tests {
             confidence: BTreeMap::from([(0, vec![1.0; 4]), (1, vec![0.55; 4]), (3, vec![0.0; 4])]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 40 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 40, held: false };
         Scene { footage, parts: vec![part] }
     }
 

@@ -236,7 +236,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     fn scene(parts: Vec<(f64, Vec<Point>)>) -> Scene {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 20, height: 70 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 1.0, width: 20, height: 70, held: false };
         let part = |(index, (depth, points)): (usize, (f64, Vec<Point>))| Part {
             name: format!("part {index}"),
             closed: true,

@@ -205,7 +205,8 @@ mod tests {
             ..Part::default()
         };
         let keyed = Part { name: "arc".into(), keys: [(2, ring(2))].into(), ..Part::default() };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 6, fps: 24.0, width: SIZE, height: SIZE };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 6, fps: 24.0, width: SIZE, height: SIZE, held: false };
         Scene { footage, parts: vec![tracked, keyed, Part::default()] }
     }
 

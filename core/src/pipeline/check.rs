@@ -205,7 +205,8 @@ mod tests {
     #[test]
     fn strips_are_warned_of() {
         let warned = |width, height| {
-            let footage = Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 12.0, width, height };
+            let footage =
+                Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 12.0, width, height, held: false };
             let mut problems = Problems::default();
             shape(&footage, &mut problems);
             problems.warnings().map(ToString::to_string).collect::<Vec<_>>()

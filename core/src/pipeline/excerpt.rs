@@ -119,7 +119,8 @@ mod tests {
         let mut keyed = part("keyed", &[1, 9], &[]);
         keyed.absent = vec![[6, 7]];
         let parts = vec![keyed, part("tracked", &[1, 4], &[1, 2, 3, 4]), part("late", &[8, 9], &[8, 9])];
-        let footage = Footage { pattern: "%d.png".into(), first: 1, last: 9, fps: 24.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 1, last: 9, fps: 24.0, width: 64, height: 48, held: false };
         Document::new(Scene { footage, parts })
     }
 

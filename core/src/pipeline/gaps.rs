@@ -7,9 +7,11 @@
 
 use super::PipelineError;
 use crate::pictures::Sequence;
+use crate::project::Document;
 use crate::scene::{FrameError, FrameNumber, Scene};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// A frame without a picture, and why it has none.
 pub type Gap = (FrameNumber, FrameError);
@@ -24,6 +26,17 @@ pub(super) fn none(sequence: &Sequence, frames: impl IntoIterator<Item = FrameNu
     let found = frames.into_par_iter().map(|frame| Some((frame, sequence.probe(frame).err()?)));
     let gaps: Vec<Gap> = found.collect::<Vec<_>>().into_iter().flatten().collect();
     if gaps.is_empty() { Ok(()) } else { Err(PipelineError::Gaps { gaps, drawn: None }) }
+}
+
+/// How many frames of a document in `folder` have no file and show that of an earlier frame, because the footage says that gaps are held.
+///
+/// # Errors
+///
+/// An invalid pattern.
+pub fn without_file(document: &Document, folder: &Path) -> Result<usize, PipelineError> {
+    let footage = &document.scene.footage;
+    let sequence = Sequence::keeping(footage, folder, 0)?;
+    Ok((footage.first..=footage.last).filter(|&frame| sequence.shown(frame) != frame).count())
 }
 
 /// The frames between the keys of parts, which tracking looks at. How far a part with one key is followed is not known before.
@@ -67,7 +80,9 @@ pub(super) fn told(gaps: &[Gap], drawn: Option<[usize; 2]>) -> String {
 
 fn one_cause(a: &FrameError, b: &FrameError) -> bool {
     match (a, b) {
-        (FrameError::Missing { .. }, FrameError::Missing { .. }) => true,
+        (FrameError::Missing { .. }, FrameError::Missing { .. }) | (FrameError::Gap { .. }, FrameError::Gap { .. }) => {
+            true
+        }
         (FrameError::Unreadable { reason, .. }, FrameError::Unreadable { reason: other, .. }) => reason == other,
         (
             FrameError::WrongSize { found_width: width, found_height: height, .. },
@@ -90,7 +105,8 @@ mod tests {
 
     #[test]
     fn tracking_needs_the_frames_between_keys_on_which_a_part_is_there() {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 12.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 12.0, width: 64, height: 48, held: false };
         let scene = Scene { footage, parts: vec![part(&[2, 6], &[[4, 4]]), part(&[9], &[]), part(&[19, 22], &[])] };
         assert_eq!(between_keys(&scene).into_iter().collect::<Vec<_>>(), [2, 3, 5, 6, 19, 20]);
         assert_eq!(with_contours(&scene).collect::<Vec<_>>(), [2, 6, 9, 19]);

@@ -78,7 +78,7 @@ mod tests {
     use super::*;
 
     fn footage(side: usize) -> Footage {
-        Footage { pattern: "%d".into(), first: 0, last: 9, fps: 12.0, width: side, height: side }
+        Footage { pattern: "%d".into(), first: 0, last: 9, fps: 12.0, width: side, height: side, held: false }
     }
 
     #[test]

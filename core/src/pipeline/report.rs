@@ -148,7 +148,8 @@ mod tests {
         };
         let parts =
             vec![part("arm", &[0.9, 0.9, 0.6, 0.1, 0.2, 0.9, 0.3, 0.9]), part("head", &[1.0]), part("hat", &[])];
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 64, height: 48, held: false };
         Scene { footage, parts }
     }
 

@@ -170,7 +170,8 @@ mod tests {
     use crate::scene::Part;
 
     fn scene(last: FrameNumber, confidence: &[(FrameNumber, f64)]) -> Scene {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 24.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last, fps: 24.0, width: 64, height: 48, held: false };
         let square = [(10.0, 10.0), (30.0, 10.0), (30.0, 30.0), (10.0, 30.0)].map(|(x, y)| Point::new(x, y)).to_vec();
         let part = Part {
             closed: true,

@@ -60,7 +60,8 @@ mod tests {
         };
         let tracks = (0..5).map(|frame| (frame, square(20.0, 30.0))).collect();
         let large = Part { name: "large".into(), closed: true, depth: 1.0, tracks, ..Part::default() };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 4, fps: 24.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 4, fps: 24.0, width: 64, height: 48, held: false };
         Scene { footage, parts: vec![small, large] }
     }
 

@@ -36,7 +36,8 @@ mod tests {
     }
 
     fn told(parts: Vec<Part>) -> Option<String> {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 12.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 12.0, width: 64, height: 48, held: false };
         untracked(&Scene { footage, parts })
     }
 

@@ -41,7 +41,7 @@
 //! let corners = [(0.0, 0.0), (16.0, 0.0), (16.0, 16.0), (0.0, 16.0)];
 //! let square = |frame| corners.map(|(x, y)| corner(frame) + Point::new(x, y));
 //! let keys = [0, 8].map(|frame| (frame, square(frame).to_vec())).into();
-//! let footage = Footage { pattern: "%d.png".into(), first: 0, last: 8, fps: 12.0, width: 96, height: 72 };
+//! let footage = Footage { pattern: "%d.png".into(), first: 0, last: 8, fps: 12.0, width: 96, height: 72, held: false };
 //! let scene = Scene { footage, parts: vec![Part { name: "square".into(), closed: true, keys, ..Part::default() }] };
 //!
 //! let tracking = Tracker::new(TrackOptions::default()).track(&scene, &Cartoon, &Silent)?;

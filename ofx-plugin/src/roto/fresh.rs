@@ -28,6 +28,7 @@ pub fn document(effect: &Effect) -> Result<Document, Failure> {
         fps: fps.filter(|fps| fps.is_finite() && (1.0..=1000.0).contains(fps)).unwrap_or(24.0),
         width: size(region.x1 / aspect, region.x2 / aspect),
         height: size(region.y1, region.y2),
+        held: false,
     };
     let document = Document::new(Scene { footage, parts: Vec::new() });
     let problems = document.problems();

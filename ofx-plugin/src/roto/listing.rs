@@ -87,7 +87,8 @@ mod tests {
     use rototoon::scene::{Footage, Part, Scene};
 
     fn document(names: &[&str]) -> Document {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         let part = |name: &&str| Part { name: (*name).into(), ..Part::default() };
         Document::new(Scene { footage, parts: names.iter().map(part).collect() })
     }

@@ -23,7 +23,7 @@ mod tests {
     #[test]
     fn footage_and_parts_are_shifted_and_back() {
         let part = Part { keys: [(0, Vec::new()), (4, Vec::new())].into(), ..Part::default() };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 25.0, width: 8, height: 8 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 25.0, width: 8, height: 8, held: false };
         let scene = Scene { footage, parts: vec![part] };
         let mut there = scene.clone();
         shift(&mut there, 100);

@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     fn footage(width: usize, height: usize) -> Footage {
-        Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width, height }
+        Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width, height, held: false }
     }
 
     #[test]

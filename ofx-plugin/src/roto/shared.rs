@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn a_document_in_use_is_read_once() {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width: 4, height: 4 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width: 4, height: 4, held: false };
         let read = || Ok(Document::new(Scene { footage: footage.clone(), parts: Vec::new() }));
         let origin = Origin::Text("a document that only this test has".into());
         let first = document(&origin, read).unwrap();

@@ -101,7 +101,7 @@ mod tests {
     use rototoon::geometry::Point;
 
     fn footage() -> Footage {
-        Footage { pattern: "%d.png".into(), first: 0, last: 19, fps: 24.0, width: 8, height: 8 }
+        Footage { pattern: "%d.png".into(), first: 0, last: 19, fps: 24.0, width: 8, height: 8, held: false }
     }
 
     fn part(keys: &[FrameNumber], shares: &[(FrameNumber, f64)]) -> Part {

@@ -60,7 +60,8 @@ mod tests {
             confidence: low.iter().map(|frame| (*frame, vec![0.2])).collect(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         let scene = Scene { footage, parts: vec![part(&[2, 3, 6]), part(&[3, 4])] };
         let forward = [-1.0, 2.0, 2.5, 3.0, 6.0].map(|time| lost(&scene, time, true));
         assert_eq!(forward, [Some(2), Some(3), Some(3), Some(6), None]);

@@ -82,7 +82,7 @@ fn edit(host: &Host) {
 /// Renders of two parts that fill most of a picture of 3840×2160.
 fn renders(host: &Host) {
     let (width, height) = (3840usize, 2160usize);
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width, height };
+    let footage = Footage { pattern: "%d.png".into(), first: 0, last: 1, fps: 24.0, width, height, held: false };
     let ring = |middle: Point| {
         move |time: f64| -> Vec<Point> {
             let at = |k: usize| middle + Point::new(9.0 * time, 0.0) + 900.0 * Point::from_angle(0.26 * k as f64);

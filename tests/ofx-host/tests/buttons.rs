@@ -48,7 +48,15 @@ pub fn drawing(frame: i32) -> Vec<f32> {
 pub fn keyed() -> Document {
     let keys = [0, LAST].map(|frame| (frame, blob(frame))).into();
     let part = Part { name: "blob".into(), closed: true, keys, ..Part::default() };
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 24.0, width: WIDTH, height: HEIGHT };
+    let footage = Footage {
+        pattern: "%d.png".into(),
+        first: 0,
+        last: LAST,
+        fps: 24.0,
+        width: WIDTH,
+        height: HEIGHT,
+        held: false,
+    };
     Document::new(Scene { footage, parts: vec![part] })
 }
 

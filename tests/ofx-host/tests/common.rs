@@ -82,7 +82,7 @@ pub fn p(x: f64, y: f64) -> Point {
 
 /// Footage of the test size.
 pub fn footage() -> Footage {
-    Footage { pattern: "f_%d.png".into(), first: 0, last: 4, fps: 24.0, width: WIDTH, height: HEIGHT }
+    Footage { pattern: "f_%d.png".into(), first: 0, last: 4, fps: 24.0, width: WIDTH, height: HEIGHT, held: false }
 }
 
 /// A part with tracks on frames 0 to 4.

@@ -26,7 +26,8 @@ fn worst(a: &Raster<f32>, b: &Raster<f32>) -> f32 {
 /// The sample cartoon, tracked perfectly.
 fn sample() -> Scene {
     let (width, height) = (rototoon_tests::sample::WIDTH as usize, rototoon_tests::sample::HEIGHT as usize);
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last: FRAMES as i32 - 1, fps: 24.0, width, height };
+    let footage =
+        Footage { pattern: "%d.png".into(), first: 0, last: FRAMES as i32 - 1, fps: 24.0, width, height, held: false };
     let rigs: Vec<Rig> = DRAWINGS.iter().map(Rig::new).collect();
     let part = |index: usize| {
         let points = |frame: usize| rigs[frame / HOLD].outlines[index].points.clone();

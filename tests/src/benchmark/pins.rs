@@ -92,7 +92,8 @@ mod tests {
             keys: keys.iter().map(|&frame| (frame, Vec::new())).collect(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 4, height: 4 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 4, height: 4, held: false };
         let scene = Scene { footage, parts: vec![part(&[0, 5, 6]), part(&[3]), part(&[0, 2, 9])] };
         assert_eq!(middles(&scene), [(0, 2), (2, 1), (2, 5)]);
     }

@@ -84,7 +84,7 @@ pub(super) fn document(set: &Set) -> Result<(Document, TempDir)> {
     }
     let (width, height) = set.size;
     let last = i32::try_from(set.lines.len() - 1).context("too many drawings")?;
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 12.0, width, height };
+    let footage = Footage { pattern: "%d.png".into(), first: 0, last, fps: 12.0, width, height, held: false };
     Ok((Document::new(Scene { footage, parts: Vec::new() }), folder))
 }
 

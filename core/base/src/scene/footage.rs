@@ -25,6 +25,9 @@ pub struct Footage {
     pub width: usize,
     /// Height of every frame, in pixels.
     pub height: usize,
+    /// Whether a frame without a file shows the nearest earlier frame that has one, as exposure numbers mean it: A0001, A0003, A0005 are
+    /// drawings on twos. Otherwise it is an error.
+    pub held: bool,
 }
 
 /// Gives access to the pictures of a footage. An implementation keeps few of them in memory, so callers request
@@ -44,6 +47,16 @@ pub enum FrameError {
     /// The file does not exist.
     #[error("frame {frame}: no file {path:?}")]
     Missing {
+        /// The requested frame.
+        frame: FrameNumber,
+        /// The path of the file.
+        path: PathBuf,
+    },
+    /// The file does not exist, but the first file of the footage does: the gap may be a held drawing.
+    #[error(
+        "frame {frame}: no file {path:?}; if the drawing before it is held, write \"gaps\": \"held\" in the document's footage"
+    )]
+    Gap {
         /// The requested frame.
         frame: FrameNumber,
         /// The path of the file.

@@ -48,6 +48,48 @@ fn numbers(document: &Value) -> Vec<(i64, Vec<u64>)> {
         .collect()
 }
 
+/// The output of `check`, without the path of the document.
+fn checked(path: &Path) -> (Option<i32>, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("check").arg(path).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output.status.code(), said.replace(&format!("{}: ", path.display()), ""))
+}
+
+#[test]
+fn numbers_of_an_exposure_sheet_hold_the_drawing_before_them() {
+    let (folder, path) = project(json!({}));
+    let at = |frame: u32| folder.path().join(format!("f_{frame:03}.png"));
+    [1, 3].iter().for_each(|&frame| fs::remove_file(at(frame)).unwrap());
+    let out = folder.path().join("traced.json");
+    let output = trace(&path, &out, &[]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    let way_out = "if the drawing before it is held, write \"gaps\": \"held\" in the document's footage";
+    assert!(!output.status.success() && said.contains("frame 1: no file") && said.contains(way_out), "{said}");
+    assert!(checked(&path).1.contains(way_out));
+
+    let mut document = read(&path);
+    document["footage"]["gaps"] = json!("held");
+    fs::write(&path, document.to_string()).unwrap();
+    let (status, said) = checked(&path);
+    assert_eq!(status, Some(0), "{said}");
+    assert!(
+        said.contains("note: footage.gaps: 2 of 4 frames have no file and show that of the frame before"),
+        "{said}"
+    );
+    assert!(trace(&path, &out, &[]).status.success());
+    let traced = read(&out);
+    assert_eq!(traced["footage"]["gaps"], "held");
+    let strokes = |frame: usize| &traced["traced"][frame]["strokes"];
+    assert_eq!(strokes(0), strokes(1));
+    assert_eq!(strokes(2), strokes(3));
+    assert_ne!(strokes(1), strokes(2));
+
+    fs::remove_file(at(0)).unwrap();
+    let (status, said) = checked(&path);
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("error: footage: frame 0: no file") && said.contains("(the same on frame 1)"), "{said}");
+}
+
 #[test]
 fn three_lines_are_the_same_three_strokes_on_every_frame() {
     let (folder, path) = project(json!({}));

@@ -195,7 +195,8 @@ mod tests {
             keys: BTreeMap::from([(11, at(0.5)), (13, at(1.0 / 3.0))]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 10, last: 15, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 10, last: 15, fps: 12.5, width: 40, height: 30, held: false };
         let parts = vec![part("far", 0.0, true), part("near", 2.0, false), Part::default()];
         let text = after_effects(&Scene { footage, parts }, 1.0);
         let wanted = "{\"width\": 40, \"height\": 30, \"fps\": 12.5, \"frames\": 6, \"parts\": [
@@ -210,7 +211,7 @@ mod tests {
 
     #[test]
     fn a_scene_without_contours_is_an_empty_list() {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 24.0, width: 4, height: 3 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 0, fps: 24.0, width: 4, height: 3, held: false };
         let text = after_effects(&Scene { footage, parts: vec![Part::default()] }, 1.0);
         assert!(text.contains("\"parts\": [\n]};"), "{text}");
     }

@@ -98,7 +98,8 @@ mod tests {
     #[test]
     fn each_form_tells_the_names_that_it_changes() {
         use rototoon_base::scene::{Footage, Part};
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
         let parts = ["a\"b", "a_b", "\u{1}", "c\u{2}"].map(|name| Part { name: name.into(), ..Part::default() });
         let scene = Scene { footage, parts: parts.into() };
         let nuke = [("a\"b", "a_b 2".into()), ("\u{1}", "_".into()), ("c\u{2}", "c_".into())];

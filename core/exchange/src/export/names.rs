@@ -33,7 +33,8 @@ mod tests {
 
     #[test]
     fn names_that_can_be_written_stay_and_others_get_out_of_their_way() {
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
         let names = ["a\"b", "a_b", "a{b", "a_b 2", "größe", "\u{1}", "c\""];
         let parts = names.map(|name| Part { name: name.into(), ..Part::default() }).into();
         let form = |name: &str| name.replace(['"', '{'], "_").replace('\u{1}', "");

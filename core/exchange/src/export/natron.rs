@@ -144,7 +144,8 @@ mod tests {
             keys: BTreeMap::from([(1, at(0.5)), (3, at(1.0 / 3.0))]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 5, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 5, fps: 12.5, width: 40, height: 30, held: false };
         let falloff = Falloff { rate: 2.5, curve: None };
         let far = Part { falloff, ..part("far", 0.0, true) };
         let parts = vec![part("near", 2.0, false), far, Part::default()];

@@ -319,7 +319,8 @@ mod tests {
             keys: keys.iter().map(|&(frame, x)| (frame, at(x))).collect::<BTreeMap<_, _>>(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 1, last: 9, fps: 12.5, width: 40, height: 32 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 1, last: 9, fps: 12.5, width: 40, height: 32, held: false };
         let parts = vec![
             part("near", 2.0, false, &[(1, 0.5), (3, 4.5), (9, -7.25)]),
             part("Größe <1> & \"2\"", 0.0, true, &[(3, 1.0 / 3.0), (4, 2.0)]),

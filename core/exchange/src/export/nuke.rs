@@ -137,7 +137,8 @@ mod tests {
             keys: BTreeMap::from([(1, at(0.5)), (3, at(2.0))]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
         Scene { footage, parts: vec![part("far {arm}", 0.0, true), part("near", 2.0, false)] }
     }
 

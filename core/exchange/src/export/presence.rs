@@ -62,7 +62,7 @@ mod tests {
         let keys: Vec<_> = frames.iter().map(|&frame| (frame, vec![Point::ONE])).collect();
         let tracks = if tracked { keys.iter().cloned().collect() } else { BTreeMap::new() };
         let part = Part { tracks, absent: absent.to_vec(), ..Part::default() };
-        let footage = Footage { pattern: "%d".into(), first: 1, last: 9, fps: 12.0, width: 4, height: 4 };
+        let footage = Footage { pattern: "%d".into(), first: 1, last: 9, fps: 12.0, width: 4, height: 4, held: false };
         presence(&part, &keys, &footage)
     }
 

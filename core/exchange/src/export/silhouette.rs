@@ -114,7 +114,8 @@ mod tests {
             absent: vec![[14, 14]],
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30, held: false };
         let mut scene = Scene { footage, parts: vec![part] };
         let keys = |text: &str| -> Vec<(String, String)> {
             let found = text
@@ -141,7 +142,8 @@ mod tests {
         let at = |x: f64| vec![Point::new(x, 2.0), Point::new(8.0, 2.0), Point::new(8.0, 10.0)];
         let keys = (10..20).map(|frame| (frame, at(if frame < 18 { 0.5 } else { 2.0 }))).collect();
         let part = Part { name: "arm".into(), closed: true, keys, ..Part::default() };
-        let footage = Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30, held: false };
         let text = silhouette(&Scene { footage, parts: vec![part] }, 1.0);
         let frames: Vec<&str> =
             text.split("<Key frame=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();

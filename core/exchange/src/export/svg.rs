@@ -319,7 +319,8 @@ mod tests {
             tracks: BTreeMap::from([(1, at(0.0)), (2, at(0.0)), (3, at(2.0))]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
         Scene { footage, parts: vec![part] }
     }
 

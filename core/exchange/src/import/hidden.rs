@@ -81,7 +81,7 @@ mod tests {
     type Found = (Vec<(FrameNumber, f64)>, Vec<[FrameNumber; 2]>);
 
     fn hidden(frames: &[FrameNumber], times: &[[f64; 2]]) -> Option<Found> {
-        let footage = Footage { pattern: "%d".into(), first: 1, last: 20, fps: 1.0, width: 9, height: 9 };
+        let footage = Footage { pattern: "%d".into(), first: 1, last: 20, fps: 1.0, width: 9, height: 9, held: false };
         let mut keys: Keys = frames.iter().map(|&frame| (frame, vec![Point::new(f64::from(frame), 0.0)])).collect();
         let absent = hide(&mut keys, times, &footage)?;
         Some((keys.into_iter().map(|(frame, points)| (frame, points[0].x)).collect(), absent))

@@ -128,7 +128,7 @@ mod tests {
             tracks: BTreeMap::from([(1, vec![Point::ZERO])]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 1.0, width: 9, height: 9 };
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 1.0, width: 9, height: 9, held: false };
         let mut scene = Scene { footage, parts: vec![old] };
         into_scene(&mut scene, vec![shape("leg"), shape("arm"), shape("head")]);
         let found: Vec<_> = scene.parts.iter().map(|part| (part.name.as_str(), part.depth)).collect();

@@ -6,7 +6,7 @@ use rototoon_base::scene::{Footage, FrameNumber};
 
 /// Footage of 200 × 100 pixels.
 pub fn footage() -> Footage {
-    Footage { pattern: "%d".into(), first: 1, last: 9, fps: 24.0, width: 200, height: 100 }
+    Footage { pattern: "%d".into(), first: 1, last: 9, fps: 24.0, width: 200, height: 100, held: false }
 }
 
 /// Checks the four corners of a shape on a frame. `wanted` has y up.

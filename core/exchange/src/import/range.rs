@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn an_end_has_a_key_where_the_file_has_one_beyond_it() {
-        let footage = Footage { pattern: "%d".into(), first: 3, last: 9, fps: 1.0, width: 9, height: 9 };
+        let footage = Footage { pattern: "%d".into(), first: 3, last: 9, fps: 1.0, width: 9, height: 9, held: false };
         for (times, frames, within, beyond) in [
             (&[3.0, 9.4][..], &[3, 9][..], true, None),
             (&[], &[], true, None),

@@ -297,7 +297,7 @@ mod tests {
     use rototoon_base::geometry::polygon;
 
     fn footage() -> Footage {
-        Footage { pattern: "%d".into(), first: 5, last: 8, fps: 10.0, width: 200, height: 100 }
+        Footage { pattern: "%d".into(), first: 5, last: 8, fps: 10.0, width: 200, height: 100, held: false }
     }
 
     fn read(content: &str) -> Result<Shapes, ImportError> {
@@ -307,7 +307,8 @@ mod tests {
     #[test]
     fn painted_regions_and_strokes_of_an_export_are_counted_and_left_out() {
         use crate::export::{SvgFill, SvgOptions, SvgStroke, svg_with_drawn};
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 30 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.0, width: 40, height: 30, held: false };
         let corners = |n: usize| -> Vec<Point> { (0..n).map(|k| Point::new(k as f64, (k * k) as f64)).collect() };
         let part = rototoon_base::scene::Part {
             name: "arm".into(),

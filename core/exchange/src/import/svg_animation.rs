@@ -170,7 +170,8 @@ mod tests {
     use super::*;
 
     fn keys(animations: &str) -> Result<Vec<(FrameNumber, String)>, ImportError> {
-        let footage = Footage { pattern: "%d".into(), first: 5, last: 14, fps: 10.0, width: 20, height: 10 };
+        let footage =
+            Footage { pattern: "%d".into(), first: 5, last: 14, fps: 10.0, width: 20, height: 10, held: false };
         let text = format!("<path>{animations}</path>");
         let document = roxmltree::Document::parse(&text).unwrap();
         let Some(found) = keyed(document.root_element(), &footage)? else { return Ok(Vec::new()) };

@@ -25,7 +25,8 @@ impl Film {
             let bytes = encode::colours(&Raster::from_fn(200, 150, shade), Format::Png).unwrap();
             std::fs::write(folder.path().join(format!("{frame:02}.png")), bytes).unwrap();
         }
-        let footage = Footage { pattern: "%02d.png".into(), first: 0, last, fps: 12.0, width: 200, height: 150 };
+        let footage =
+            Footage { pattern: "%02d.png".into(), first: 0, last, fps: 12.0, width: 200, height: 150, held: false };
         Self { folder, document: Document::new(Scene { footage, parts: Vec::new() }) }
     }
 

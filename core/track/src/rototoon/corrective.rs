@@ -140,7 +140,8 @@ mod tests {
     }
 
     fn scene(parts: Vec<Part>) -> Scene {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 12.0, width: 64, height: 48 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 12.0, width: 64, height: 48, held: false };
         Scene { footage, parts }
     }
 

@@ -38,7 +38,15 @@ impl FrameSource for Figure {
 fn worst(mechanisms: Mechanisms) -> f64 {
     let keys = [0, LAST].map(|frame| (frame, Figure::contour(frame)));
     let part = Part { name: "figure".into(), closed: true, keys: keys.into(), ..Part::default() };
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: WIDTH, height: HEIGHT };
+    let footage = Footage {
+        pattern: "%d.png".into(),
+        first: 0,
+        last: LAST,
+        fps: 12.0,
+        width: WIDTH,
+        height: HEIGHT,
+        held: false,
+    };
     let scene = Scene { footage, parts: vec![part] };
     let options = TrackOptions { mechanisms, ..TrackOptions::default() };
     let tracking = Tracker::new(options).track(&scene, &Figure, &Silent).unwrap();

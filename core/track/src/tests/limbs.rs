@@ -32,8 +32,15 @@ impl Arm {
     }
 
     fn scene() -> Scene {
-        let footage =
-            Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: SIZE.0, height: SIZE.1 };
+        let footage = Footage {
+            pattern: "%d.png".into(),
+            first: 0,
+            last: LAST,
+            fps: 12.0,
+            width: SIZE.0,
+            height: SIZE.1,
+            held: false,
+        };
         let keys = [0, LAST].map(|frame| (frame, Self::contour(frame)));
         let part = Part { name: "arm".into(), closed: true, keys: keys.into(), ..Part::default() };
         Scene { footage, parts: vec![part] }

@@ -49,8 +49,15 @@ impl Drawn {
     }
 
     pub(super) fn scene(&self, parts: Vec<Part>) -> Scene {
-        let footage =
-            Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: WIDTH, height: HEIGHT };
+        let footage = Footage {
+            pattern: "%d.png".into(),
+            first: 0,
+            last: LAST,
+            fps: 12.0,
+            width: WIDTH,
+            height: HEIGHT,
+            held: false,
+        };
         Scene { footage, parts }
     }
 }

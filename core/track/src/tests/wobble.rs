@@ -56,8 +56,15 @@ impl Face {
     }
 
     fn scene() -> Scene {
-        let footage =
-            Footage { pattern: "%d.png".into(), first: 0, last: LAST, fps: 12.0, width: SIZE.0, height: SIZE.1 };
+        let footage = Footage {
+            pattern: "%d.png".into(),
+            first: 0,
+            last: LAST,
+            fps: 12.0,
+            width: SIZE.0,
+            height: SIZE.1,
+            held: false,
+        };
         let part = |part: usize| {
             let keys = [0, LAST].map(|frame| (frame, Self::truth(part, frame)));
             Part {

@@ -57,7 +57,8 @@ mod tests {
             pins: [(4, [(1, Point::ONE)].into())].into(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         Document::new(Scene { footage, parts: vec![part] })
     }
 

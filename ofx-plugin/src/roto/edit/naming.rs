@@ -36,7 +36,8 @@ mod tests {
 
     #[test]
     fn a_name_is_free_and_not_empty() {
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         let parts = ["a", "b"].map(|name| Part { name: name.into(), ..Part::default() }).into();
         let mut document = Document::new(Scene { footage, parts });
         for (name, why) in [("", "New name"), ("b", "already"), ("a", "already")] {

@@ -99,7 +99,8 @@ mod tests {
             keys: keys.clone().into(),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8 };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         Document::new(Scene { footage, parts: depths.iter().enumerate().map(part).collect() })
     }
 

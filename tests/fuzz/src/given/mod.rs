@@ -98,7 +98,7 @@ pub fn name(u: &mut Unstructured) -> Result<String> {
 
 /// A footage of a few tiny frames, for readers that need one.
 pub fn footage() -> Footage {
-    Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 12.0, width: 48, height: 40 }
+    Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 12.0, width: 48, height: 40, held: false }
 }
 
 /// The text of an input: the bytes themselves where they begin with `begins`, otherwise what `decode` makes of them.

@@ -2,7 +2,7 @@ use super::*;
 use rototoon_base::geometry::Point;
 
 const FOOTAGE: fn() -> Footage =
-    || Footage { pattern: "%d".into(), first: 10, last: 20, fps: 1.0, width: 200, height: 100 };
+    || Footage { pattern: "%d".into(), first: 10, last: 20, fps: 1.0, width: 200, height: 100, held: false };
 
 fn file(shape: &str, path: &str) -> String {
     format!(

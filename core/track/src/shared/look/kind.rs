@@ -278,6 +278,7 @@ mod tests {
             fps: 24.0,
             width: 540,
             height: 540,
+            held: false,
         };
         let scene = |extra: &[FrameNumber]| Scene {
             footage: footage.clone(),

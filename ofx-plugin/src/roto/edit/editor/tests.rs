@@ -16,7 +16,8 @@ fn square(x: f64, y: f64) -> Vec<Point> {
 
 /// A tracked square with keys on frames 0 and 4, and a still open line in front of it.
 fn document() -> Document {
-    let footage = Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 200, height: 100 };
+    let footage =
+        Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 200, height: 100, held: false };
     let at = |frame: i32| square(20.0 + 5.0 * f64::from(frame), 30.0);
     let square = Part {
         name: "square".into(),
