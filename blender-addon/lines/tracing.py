@@ -222,10 +222,28 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
         result[frame] = sorted(strokes, key=lambda stroke: stroke.place)
     if group.mapper.still:
         # A held picture shows the drawing before it, also one of the artist.
-        for frame in sorted(plan.held & result.keys()):
-            if frame - 1 in result or frame - 1 in layer.keys or frame - 1 in plan.held:
+        held = plan.held | ({number + plan.offset for number in repeats(traced)} if plan.hold else set())
+        for frame in sorted(held & result.keys()):
+            if frame - 1 in result or frame - 1 in layer.keys or frame - 1 in held:
                 result[frame] = None
     return result
+
+
+def repeats(traced: Traced) -> set[int]:
+    """The pictures that have the strokes of the picture before, to the last digit: the library found that they show the same drawing."""
+    numbers, bounds, ends = traced.frames.tolist(), traced.stroke_offsets.tolist(), np.asarray(traced.point_offsets)
+    by_stroke = [np.asarray(each) for each in (traced.tracks, traced.closed, traced.fills, traced.colours)]
+    by_point = [np.asarray(each) for each in (traced.points, traced.widths)]
+
+    def content(place: int) -> list[np.ndarray]:
+        low, high = bounds[place], bounds[place + 1]
+        strokes = [each[low:high] for each in [*by_stroke, np.diff(ends)]]
+        return strokes + [each[ends[low] : ends[high]] for each in by_point]
+
+    def same(a: int, b: int) -> bool:
+        return all(np.array_equal(p, q, equal_nan=True) for p, q in zip(content(a), content(b), strict=True))
+
+    return {number for k, number in enumerate(numbers) if k and numbers[k - 1] == number - 1 and same(k - 1, k)}
 
 
 def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, record, done: Done, known: Materials = _NONE) -> Iterator[float]:

@@ -6,11 +6,13 @@
 
 mod breakdown;
 mod check;
+mod contrast;
 mod doubts;
 mod error;
 mod excerpt;
 mod fill;
 mod gaps;
+mod holds;
 pub mod memory;
 mod paint;
 mod picture;

@@ -7,6 +7,7 @@ import pytest
 from line_stage import film, pictures, traced  # noqa: F401 - fixtures
 from line_stage import attribute, away, handle_of, kinds, number_of, rendered, said
 from mathutils import Matrix
+from shots import write_png
 
 
 def test_the_film_becomes_strokes_with_the_same_numbers_on_every_frame(addon, traced):
@@ -145,6 +146,20 @@ def test_held_pictures_become_held_drawings(addon, film, fake, pictures, tmp_pat
     ls.put(addon, film, "Ink", 4, [(ls.lines(0)[4][0], False)])
     bpy.ops.rototoon.carry_strokes()
     assert list(kinds(addon, film, "Ink")) == [1, 3, 4]
+
+
+def test_a_drawing_that_was_scanned_twice_is_held(addon, film, tmp_path):
+    grain = np.random.default_rng(1)
+    for number in range(1, 7):
+        scan = ls.picture((number - 1) // 2) + grain.normal(0, 2, (*ls.picture(0).shape[:2], 1))
+        write_png(tmp_path / f"line_{number:03}.png", scan.clip(0, 255).round().astype(np.uint8))
+    film.rototoon.pattern = str(tmp_path / "line_%03d.png")
+    bpy.ops.rototoon.trace_drawing(hold=False)
+    drawn = [ls.strokes(addon, film, "Lines", frame) for frame in range(1, 7)]
+    for once, again in zip(drawn[::2], drawn[1::2], strict=True):
+        assert list(once) == list(again) and all(np.array_equal(once[number], again[number]) for number in once)
+    bpy.ops.rototoon.trace_drawing()
+    assert list(kinds(addon, film, "Lines")) == [1, 3, 5]
 
 
 def test_frames_on_which_strokes_are_lost_are_said(addon, film, fake, monkeypatch):

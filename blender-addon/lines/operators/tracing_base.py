@@ -34,7 +34,7 @@ class Framed:
     frames: bpy.props.EnumProperty(name="Frames", description="Which frames are drawn", items=FRAMES)
     hold: bpy.props.BoolProperty(
         name="Hold",
-        description="A frame with the same picture as the one before, as in films on twos, holds its drawing",
+        description="A frame that shows the same drawing as the one before, as in films on twos, holds it. The grain of a scan makes no difference",
         default=True,
     )
 

@@ -8,6 +8,7 @@
 #[cfg(test)]
 mod tests;
 
+use super::holds::Holds;
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
 use crate::fill::{Click, Page, Paint, Source, carry, fills};
@@ -16,7 +17,7 @@ use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
-use crate::scene::{Colour, FrameNumber, FrameSource, Progress, Raster};
+use crate::scene::{Colour, FrameNumber, FrameSource, Progress};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -130,6 +131,7 @@ pub fn fill(
     let sequence = frames(document, folder)?;
     let mut painting = Painting {
         frames: &sequence,
+        holds: Holds::none(&sequence),
         options,
         progress,
         palette: palette(&clicks),
@@ -223,7 +225,6 @@ fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Colour> {
 #[derive(Clone)]
 struct Painted {
     frame: FrameNumber,
-    picture: Arc<Raster<Colour>>,
     page: Arc<Page>,
     paint: Paint,
 }
@@ -231,6 +232,8 @@ struct Painted {
 /// Painting at work.
 struct Painting<'a> {
     frames: &'a Sequence,
+    /// Which frames hold a drawing.
+    holds: Holds<'a>,
     options: &'a FillOptions,
     progress: &'a dyn Progress,
     palette: Vec<Colour>,
@@ -251,6 +254,7 @@ impl Painting<'_> {
         let (model, key, missed) = self.model(clicks)?;
         let looked_at = key.frame.min(*range.start())..=key.frame.max(*range.end());
         gaps::none(self.frames, looked_at.clone())?;
+        self.holds = Holds::of(self.frames, self.frames.footage().first, &looked_at, self.progress)?;
         self.all = self.done + looked_at.count() + clicks.len();
         self.miss(&clicks[model], &missed);
         self.keep(&key);
@@ -307,14 +311,14 @@ impl Painting<'_> {
 
     /// A frame painted by its clicks alone, and the clicks that paint nothing.
     fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, Vec<usize>), PipelineError> {
-        let (picture, mut page) = self.look(clicks.1.frame)?;
+        let mut page = self.look(clicks.1.frame)?;
         let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
-        Ok((Painted { frame: clicks.1.frame, picture, page: page.into(), paint }, missed))
+        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, missed))
     }
 
     /// A frame painted by what is known beside it, and then by its own clicks.
     fn mended(&mut self, known: &Known, clicks: &(usize, FillClicks)) -> Result<Painted, PipelineError> {
-        let (picture, mut page) = self.look(clicks.1.frame)?;
+        let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
         let (paint, missed) = match carry(&known.sources(), &mut page, &mut self.next) {
@@ -322,23 +326,22 @@ impl Painting<'_> {
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
         self.miss(clicks, &missed);
-        Ok(Painted { frame: clicks.1.frame, picture, page: page.into(), paint })
+        Ok(Painted { frame: clicks.1.frame, page: page.into(), paint })
     }
 
     /// Paints frames one after the other, beginning beside the last painted one.
     fn outward(&mut self, known: &mut Known, frames: impl Iterator<Item = FrameNumber>) -> Result<(), PipelineError> {
         for frame in frames {
-            let picture = self.frames.picture(frame)?;
-            if picture.data() == known.last.picture.data() {
+            if self.holds.first(frame) == self.holds.first(known.last.frame) {
                 self.progress()?;
                 known.last.frame = frame;
                 self.keep(&known.last);
                 continue;
             }
-            let (picture, mut page) = self.look(frame)?;
+            let mut page = self.look(frame)?;
             match carry(&known.sources(), &mut page, &mut self.next) {
                 Some(paint) => {
-                    known.last = Painted { frame, picture, page: page.into(), paint };
+                    known.last = Painted { frame, page: page.into(), paint };
                     self.keep(&known.last);
                 }
                 None => self.report.frames.push(FilledFrame { frame, ..FilledFrame::default() }),
@@ -347,10 +350,9 @@ impl Painting<'_> {
         Ok(())
     }
 
-    fn look(&mut self, frame: FrameNumber) -> Result<(Arc<Raster<Colour>>, Page), PipelineError> {
+    fn look(&mut self, frame: FrameNumber) -> Result<Page, PipelineError> {
         self.progress()?;
-        let picture = self.frames.picture(frame)?;
-        Ok((picture.clone(), Page::new(picture, &self.options.lines)))
+        Ok(Page::new(self.frames.picture(frame)?, &self.options.lines))
     }
 
     fn progress(&mut self) -> Result<(), PipelineError> {

@@ -9,6 +9,7 @@ mod tests;
 pub use kept::TraceMemory;
 pub use on_keys::trace_drawings;
 
+use super::holds::Holds;
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
@@ -22,7 +23,7 @@ use known::{Known, beside, renamed};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ use std::sync::Arc;
 /// which is traced. From there strokes are carried from frame to frame, forwards and backwards. Frames with a drawing keep
 /// that drawing's strokes; each gets the number of the carried stroke that it lies on, or a new one. Frames between two
 /// drawings are [bound to both](between()).
+///
+/// Frames that hold a drawing have its strokes to the last digit, unless the artist drew there.
 ///
 /// Frames outside of `range` stay as they are. The nearest of them before and behind that have a drawing or traced strokes count as
 /// drawings: the strokes within have their numbers, as if all frames were traced at once. New strokes have numbers that no frame
@@ -63,9 +66,10 @@ pub fn trace(
     let beside = beside(&drawn, &earlier, &range);
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
-    let all = looks(&drawn, &beside, &range);
+    let holds = Holds::of(&sequence, footage.first, &looked_at(&beside, &range), progress)?;
+    let all = looks(&drawn, &beside, &range, &holds);
     let mut tracing = Tracing {
-        frames: &sequence,
+        frames: &holds,
         drawn,
         options,
         memory,
@@ -85,7 +89,7 @@ pub fn trace(
 
 /// Tracing at work.
 struct Tracing<'a> {
-    frames: &'a dyn FrameSource,
+    frames: &'a Holds<'a>,
     drawn: Vec<&'a Drawn>,
     options: &'a Options,
     memory: Option<&'a mut TraceMemory>,
@@ -131,7 +135,7 @@ impl Tracing<'_> {
             (None, ..) => self.begun(*range.start(), drawn.next())?,
         };
         found.push((place.frame, place.drawn.clone()));
-        let back = (*range.start()..place.frame).rev().collect();
+        let back = self.drawings(*range.start()..place.frame).into_iter().rev().collect();
         self.outward(&mut place, back, &mut found)?;
         for drawing in drawn {
             place = self.between(place, drawing.frame, of_drawing(drawing), &mut found)?;
@@ -139,13 +143,19 @@ impl Tracing<'_> {
         match behind {
             Some(known) if place.frame < known.frame => self.up_to(place, known, new, &mut found)?,
             _ => {
-                let rest = (place.frame + 1..=*range.end()).collect();
+                let rest = self.drawings(place.frame + 1..range.end() + 1);
                 self.outward(&mut place, rest, &mut found)?;
             }
         }
         self.progress.report("Tracing", 1.0)?;
+        let found = held(found, *range.end());
         let within = found.into_iter().filter(|(frame, _)| range.contains(frame));
         Ok(within.map(|(frame, strokes)| written(frame, &strokes)).collect())
+    }
+
+    /// The frames of a range on which a drawing begins.
+    fn drawings(&self, range: Range<FrameNumber>) -> Vec<FrameNumber> {
+        range.filter(|&frame| !self.frames.is_held(frame)).collect()
     }
 
     /// The place of a drawing outside of the range.
@@ -235,10 +245,10 @@ impl Tracing<'_> {
         drawn: Vec<Stroke>,
         found: &mut Found,
     ) -> Result<Place, PipelineError> {
-        let frames: Vec<FrameNumber> = (place.frame + 1..to).collect();
+        let frames = self.drawings(place.frame + 1..to);
         let numbers = Numbers::new(place.drawn.iter().chain(&place.beside), self.next);
         let before = [numbers.ranked(&place.drawn), numbers.ranked(&place.beside)];
-        let looked: Vec<FrameNumber> = (place.frame..=to).collect();
+        let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).chain([to]).collect();
         let key = self.key("between", &[&before[0], &before[1]], &looked, &drawn)?;
         if let Some(span) = self.recall(key) {
             self.next += span.new;
@@ -322,14 +332,34 @@ impl Tracing<'_> {
     }
 }
 
-/// How many pictures are looked at. Frames between two drawings are looked at twice.
-fn looks(drawn: &[&Drawn], [before, behind]: &[Option<Known>; 2], range: &RangeInclusive<FrameNumber>) -> usize {
+/// Traced drawings and, up to the frame `end`, those of the frames between: each holds the one before it.
+fn held(mut found: Found, end: FrameNumber) -> Found {
+    found.sort_by_key(|(frame, _)| *frame);
+    let nexts = found.iter().skip(1).map(|(frame, _)| *frame).chain([end.saturating_add(1)]).collect::<Vec<_>>();
+    let shown = found.iter().zip(nexts).flat_map(|((frame, strokes), next)| {
+        (*frame..next.max(frame.saturating_add(1))).map(move |frame| (frame, strokes.clone()))
+    });
+    shown.collect()
+}
+
+/// The frames that are looked at for those of a range.
+fn looked_at(
+    [before, behind]: &[Option<Known>; 2],
+    range: &RangeInclusive<FrameNumber>,
+) -> RangeInclusive<FrameNumber> {
+    let frame = |known: &Option<Known>| known.as_ref().map(|known| known.frame);
+    frame(before).unwrap_or(*range.start())..=frame(behind).unwrap_or(*range.end())
+}
+
+/// How many pictures are looked at. Frames between two drawings are looked at twice, those that hold a drawing never.
+fn looks(drawn: &[&Drawn], beside: &[Option<Known>; 2], range: &RangeInclusive<FrameNumber>, holds: &Holds) -> usize {
+    let [before, behind] = beside;
+    let begun = |frame: &FrameNumber| !holds.is_held(*frame);
     let outside = [before, behind].map(|known| known.as_ref().map(|known| known.frame));
     let inner = drawn.iter().map(|drawing| drawing.frame);
     let places: Vec<FrameNumber> = outside[0].into_iter().chain(inner).chain(outside[1]).collect();
-    let twice: usize = places.windows(2).map(|pair| (pair[0] + 1..pair[1]).count()).sum();
-    let (from, to) = (outside[0].unwrap_or(*range.start()), outside[1].unwrap_or(*range.end()));
-    (from..=to).count() + twice
+    let twice: usize = places.windows(2).map(|pair| (pair[0] + 1..pair[1]).filter(begun).count()).sum();
+    looked_at(beside, range).filter(begun).count() + twice
 }
 
 /// The strokes of a drawing.

@@ -63,7 +63,7 @@ pub use contract::error::TrackError;
 pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use contract::tracking::{Ending, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
 pub use rototoon::mechanisms::{Mechanism, Mechanisms};
-pub use shared::held::drawings;
+pub use shared::held::{began, drawings};
 pub use shared::weakest::{WeakestFrame, weakest_frame};
 pub use tracker::{Preset, TrackOptions, Tracker};
 

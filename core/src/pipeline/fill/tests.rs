@@ -2,7 +2,7 @@ use super::*;
 use crate::geometry::{Point, polygon};
 use crate::project::fills::FillClick;
 use crate::render::{Format, encode};
-use crate::scene::{Footage, Scene, Silent};
+use crate::scene::{Footage, Raster, Scene, Silent};
 
 const PAPER: Colour = [0.9, 0.9, 1.0];
 const RED: Colour = [1.0, 0.0, 0.0];
@@ -28,6 +28,21 @@ impl Film {
         let footage =
             Footage { pattern: "%02d.png".into(), first: 0, last, fps: 12.0, width: 200, height: 150, held: false };
         Self { folder, document: Document::new(Scene { footage, parts: Vec::new() }) }
+    }
+
+    /// Stray dots on the paper, others on each frame, as dust on a scanner.
+    fn dusty(self) -> Self {
+        for frame in 0..=self.document.scene.footage.last {
+            let path = self.folder.path().join(format!("{frame:02}.png"));
+            let picture = crate::pictures::decode(&path, None).unwrap();
+            let shade = |x: usize, y: usize| {
+                let dust = (x * 31 + y * 17 + frame as usize * 7) % 397 == 0;
+                picture.get(x, y).map(|value| value - if dust { 0.04 } else { 0.0 })
+            };
+            let bytes = encode::colours(&Raster::from_fn(200, 150, shade), Format::Png).unwrap();
+            std::fs::write(path, bytes).unwrap();
+        }
+        self
     }
 
     /// Clicks on frames.
@@ -252,4 +267,16 @@ fn regions_that_are_not_sure_enough_stay_unpainted() {
     fill(&mut film.document, film.folder.path(), None, &options, &Silent).unwrap();
     assert_eq!(film.at(1, (66.0, 75.0)), None);
     assert_eq!(film.at(1, (31.0, 75.0)).unwrap().colour, RED);
+}
+
+#[test]
+fn a_held_drawing_has_the_regions_of_the_frame_before() {
+    let mut film = Film::new(5, |frame, p| moving(frame / 2, p)).dusty().clicked(&[(0, &own_clicks())]);
+    let report = film.fill().unwrap();
+    assert!(report.frames.len() == 6 && report.frames.iter().all(|frame| frame.regions == 3), "{report:?}");
+    let filled = film.document.filled().unwrap();
+    for k in [0, 2, 4] {
+        assert_eq!(filled[k].regions, filled[k + 1].regions, "frame {}", k + 1);
+    }
+    assert_ne!(filled[1].regions, filled[2].regions);
 }

@@ -1,6 +1,6 @@
 //! After an edit, tracing with a memory gives what tracing anew gives, and works only where the edit matters.
 
-use super::{Drawn, TraceMemory, Tracing, beside};
+use super::{Drawn, Holds, TraceMemory, Tracing, beside, looked_at};
 use crate::geometry::Point;
 use crate::lines::Options;
 use crate::project::drawings::DrawnStroke;
@@ -49,6 +49,24 @@ fn traced(drawings: &[Drawn], memory: Option<&mut TraceMemory>) -> Vec<TracedDra
     within(0..=LAST, drawings, &[], memory)
 }
 
+/// The film on twos, on paper whose grain is new on each frame.
+struct OnTwos;
+
+impl FrameSource for OnTwos {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        let mut picture = Film.picture(frame / 2 * 2)?.as_ref().clone();
+        let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(frame as u64 + 1);
+        for y in 0..picture.height() {
+            for colour in picture.row_mut(y) {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                let grain = (state >> 40) as f32 / (1u64 << 24) as f32 - 0.5;
+                *colour = colour.map(|value| (value + 0.06 * grain).clamp(0.0, 1.0));
+            }
+        }
+        Ok(Arc::new(picture))
+    }
+}
+
 /// Traces the frames of a range, beside what an earlier run traced outside of it.
 fn within(
     range: RangeInclusive<FrameNumber>,
@@ -56,9 +74,29 @@ fn within(
     earlier: &[TracedDrawing],
     memory: Option<&mut TraceMemory>,
 ) -> Vec<TracedDrawing> {
+    of(&Holds::none(&Film), range, drawings, earlier, memory)
+}
+
+/// Traces frames of the film on twos.
+fn on_twos(range: RangeInclusive<FrameNumber>, drawings: &[Drawn], earlier: &[TracedDrawing]) -> Vec<TracedDrawing> {
+    let looked = looked_at(&beside(drawings, earlier, &range), &range);
+    let holds = Holds::of(&OnTwos, 0, &looked, &Silent).unwrap();
+    let found = of(&holds, range.clone(), drawings, earlier, None);
+    let again = of(&holds, range, drawings, earlier, Some(&mut TraceMemory::default()));
+    assert_eq!(found, again, "with a memory");
+    found
+}
+
+fn of(
+    frames: &Holds,
+    range: RangeInclusive<FrameNumber>,
+    drawings: &[Drawn],
+    earlier: &[TracedDrawing],
+    memory: Option<&mut TraceMemory>,
+) -> Vec<TracedDrawing> {
     let used = earlier.iter().flat_map(|drawing| &drawing.strokes).map(|stroke| stroke.track + 1).max();
     let mut tracing = Tracing {
-        frames: &Film,
+        frames,
         drawn: drawings.iter().filter(|drawing| range.contains(&drawing.frame)).collect(),
         options: &Options::default(),
         memory,
@@ -184,4 +222,45 @@ fn an_edit_is_traced_again_only_where_it_matters() {
     let cut = [drawn(1, 0.0), drawn(4, 0.0), drawn(5, 0.0), drawn(7, 0.0)];
     assert_eq!(traced(&cut, Some(&mut memory)), traced(&cut, None));
     assert!(memory.spans() <= 9, "at most two between and one behind: {}", memory.spans());
+}
+
+#[test]
+fn a_held_drawing_has_the_strokes_of_the_frame_before() {
+    let found = on_twos(0..=LAST, &[], &[]);
+    assert_eq!(found.iter().map(|drawing| drawing.frame).collect::<Vec<_>>(), (0..=LAST).collect::<Vec<_>>());
+    let plain = of(&Holds::none(&OnTwos), 0..=LAST, &[], &[], None);
+    for frame in (0..LAST as usize).step_by(2) {
+        assert_eq!(found[frame].strokes, found[frame + 1].strokes, "frame {}", frame + 1);
+        assert_ne!(plain[frame].strokes, plain[frame + 1].strokes, "by itself it would wobble");
+        assert!(frame == 0 || found[frame].strokes != found[frame - 1].strokes, "frame {frame} has moved");
+    }
+    assert!(found[2].strokes.len() >= 3, "a stroke begins on the way");
+}
+
+#[test]
+fn a_drawing_of_the_artist_on_a_held_frame_stays() {
+    for frame in [4, 5] {
+        let mine = Drawn { frame, ..drawn(4, 1.0) };
+        for drawings in [vec![mine.clone()], vec![drawn(1, 0.0), mine.clone(), drawn(8, 0.0)]] {
+            let found = on_twos(0..=LAST, &drawings, &[]);
+            let lines = |frame: usize| -> Vec<Vec<Point>> {
+                found[frame].strokes.iter().map(|stroke| stroke.points.clone()).collect()
+            };
+            let own: Vec<Vec<Point>> = mine.strokes.iter().map(|stroke| stroke.points.clone()).collect();
+            assert_eq!(lines(frame as usize), own, "frame {frame}");
+            assert_eq!(lines(4) == own, frame == 4, "the frame before a drawing has its own strokes");
+            assert_eq!(lines(5), own, "the frame after it shows it");
+            assert_eq!(found[6].strokes, found[7].strokes);
+        }
+    }
+}
+
+#[test]
+fn stages_give_what_one_run_gives_where_drawings_are_held() {
+    let whole = on_twos(0..=LAST, &[], &[]);
+    for end in [2, 3, 6] {
+        let first = on_twos(0..=end, &[], &[]);
+        let second = on_twos(end + 1..=LAST, &[], &first);
+        assert_eq!([first, second].concat(), whole, "cut behind frame {end}");
+    }
 }
