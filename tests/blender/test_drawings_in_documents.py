@@ -76,7 +76,7 @@ def test_the_messages_count_what_went_out_and_came_in(addon, traced, tmp_path):
     exported(tmp_path / "own.json")
     assert said(addon).text == "1 drawing and traced lines of 5 frames in own.json"
     imported(tmp_path / "own.json")
-    assert said(addon).text == "1 drawing and 6 traced strokes from own.json"
+    assert said(addon).text == '1 drawing and 6 traced strokes from own.json, in the new object "own"'
 
 
 def test_strokes_without_a_number_and_copies_get_numbers_in_the_document(addon, traced, tmp_path):
@@ -97,7 +97,7 @@ def test_strokes_without_a_number_and_copies_get_numbers_in_the_document(addon, 
 def test_drawings_of_a_document_are_the_artists(addon, film, fake, pictures, tmp_path):
     drawings = [{"frame": frame, "strokes": [line(0, frame - 1), line(4, frame - 1)]} for frame in (1, 6)]
     ob = taken(tmp_path / "drawn.json", pictures, drawings=drawings)
-    assert said(addon).text == "2 drawings from drawn.json"
+    assert said(addon).text == '2 drawings from drawn.json, in the new object "drawn"'
     assert kinds(addon, ob, "Lines") == {1: KEY, 6: KEY}
     assert not attribute(addon, ob, "Lines", 6, "rototoon_track").any(), "which stroke is which is not known yet"
     close(document(pictures, drawings=drawings)["drawings"], exported(tmp_path / "out.json")["drawings"])
@@ -110,7 +110,7 @@ def test_the_drawing_wins_and_has_the_numbers_of_the_traced_strokes(addon, film,
     strokes = [line(0), line(4)]
     traced = [{"frame": 1, "strokes": [line(4, track=7), line(0, track=3)]}, {"frame": 2, "strokes": [line(4, 1, track=7)]}]
     ob = taken(tmp_path / "both.json", pictures, drawings=[{"frame": 1, "strokes": strokes}], traced=traced)
-    assert said(addon).text == "1 drawing and 1 traced stroke from both.json"
+    assert said(addon).text == '1 drawing and 1 traced stroke from both.json, in the new object "both"'
     assert list(ls.strokes(addon, ob, "Lines", 1)) == [4, 8] and list(ls.strokes(addon, ob, "Lines", 2)) == [8]
 
 
@@ -159,7 +159,7 @@ def test_a_changed_in_between_of_a_document_is_kept(addon, film, tmp_path):
     tweened(addon)
     exported(tmp_path / "tween.json")
     ob = imported(tmp_path / "tween.json")
-    assert said(addon).text == "2 drawings and 4 in-betweens from tween.json"
+    assert said(addon).text == '2 drawings and 4 in-betweens from tween.json, in the new object "tween"'
     moved(addon, ob, 3)
     before = ls.strokes(addon, ob, "Lines", 3)
     bpy.ops.rototoon.update_in_betweens()

@@ -263,7 +263,7 @@ def test_traced_strokes_go_into_a_document_and_come_back(addon, traced, tmp_path
     before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
     radii = attribute(addon, traced, "Lines", 2, "radius")
     bpy.ops.rototoon.import_document(filepath=str(path))
-    assert said(addon).text == "1 part and 6 traced strokes from lines.json"
+    assert said(addon).text == '1 part and 6 traced strokes from lines.json, in the new object "lines"'
     ob = bpy.context.object
     assert ob != traced and kinds(addon, ob, "Lines") == dict.fromkeys(range(1, 7), "GENERATED")
     for frame in range(1, 7):

@@ -269,7 +269,7 @@ def test_paint_goes_into_a_document_and_comes_back(addon, painted, tmp_path):
     with addon("rototoon").Session.open(path) as session:
         assert len(session.filled().on(4)) == 4, "the library reads it"
     assert bpy.ops.rototoon.import_document(filepath=str(path)) == {"FINISHED"}
-    assert said(addon).text == "paint of 6 frames from paint.json"
+    assert said(addon).text == 'paint of 6 frames from paint.json, in the new object "paint"'
     other = bpy.context.object
     assert other != painted and kinds(addon, other, LAYER) == kinds(addon, painted, LAYER)
     for frame in range(1, 7):

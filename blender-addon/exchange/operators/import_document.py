@@ -67,7 +67,8 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         lines, paint = drawn.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
         ob.data.update_tag()
-        return f"{' and '.join(self._said(ob, lines, paint))} from {os.path.basename(path)}"
+        where = f', in the new object "{ob.name}"' if self.into == "NEW" else ""
+        return f"{' and '.join(self._said(ob, lines, paint))} from {os.path.basename(path)}{where}"
 
     def _said(self, ob, lines, paint: int) -> list[str]:
         """What came in, for the message."""
