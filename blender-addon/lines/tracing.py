@@ -49,6 +49,8 @@ class Done:
     """Frames on which many strokes end or begin: identity may be lost there."""
     confidence: dict[numbers.Key, dict[int, float]] = field(default_factory=dict)
     """Of each stroke, by scene frame."""
+    bare: set[int] = field(default_factory=set)
+    """Scene frames on which lines were looked for, and none or hardly any were found."""
 
 
 Materials = Mapping[tuple[int, bool], int]
@@ -135,6 +137,9 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
     done, kept = Done(), records.read(ob.data)
     counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})
     for g, (group, traced) in enumerate(zip(plan.groups, found, strict=True)):
+        if plan.new:
+            found_bare = bare(traced, group.document["footage"]["height"])
+            done.bare |= {number + plan.offset for number in found_bare} & set(range(plan.first, plan.last + 1))
         own = [layer.name for layer in group.layers]
         keyed = _keyed(group, traced, plan.offset, counter, home if home in own else own[-1])
         for k, layer in enumerate(group.layers):
@@ -227,6 +232,22 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
             if frame - 1 in result or frame - 1 in layer.keys or frame - 1 in held:
                 result[frame] = None
     return result
+
+
+SHORT, FEW = 0.3, 0.1
+"""Length of hardly any lines, in heights of the picture and as a share of the film's median. The command line has the same bounds."""
+
+
+def bare(traced: Traced, height: float) -> set[int]:
+    """The pictures without a line, or with hardly any."""
+    points, ends = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.point_offsets)
+    own = [points[a:b] for a, b in zip(ends, ends[1:])]
+    own = [np.concatenate([line, line[:1]]) if shut else line for line, shut in zip(own, np.asarray(traced.closed), strict=True)]
+    lengths = [float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()) for line in own]
+    bounds = np.asarray(traced.stroke_offsets).tolist()
+    by_frame = [sum(lengths[a:b]) for a, b in zip(bounds, bounds[1:])]
+    least = max(SHORT * height, FEW * sorted(by_frame)[len(by_frame) // 2]) if by_frame else 0.0
+    return {number for number, length in zip(traced.frames.tolist(), by_frame, strict=True) if length < least}
 
 
 def repeats(traced: Traced) -> set[int]:

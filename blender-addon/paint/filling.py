@@ -48,6 +48,10 @@ class Done:
     """Scene frames with a shape of the artist that lies on a line."""
     unrelated: set[int] = field(default_factory=set)
     """Scene frames that no painted drawing resembles: they stay unpainted."""
+    overruled: set[int] = field(default_factory=set)
+    """Scene frames with a shape of the artist whose region a later shape fills."""
+    bare: set[int] = field(default_factory=set)
+    """Scene frames with hardly any regions: their lines were probably not found."""
 
 
 def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
@@ -102,13 +106,18 @@ def layer_of(ob, name: str):
 
 
 def _done(plan: pl.Plan, found: Filled) -> Done:
-    missed: dict[int, set[int]] = {}
-    for frame, index in found.missed:
-        missed.setdefault(frame + plan.offset, set()).add(index)
-    done = Done(unrelated={frame + plan.offset for frame in found.unrelated})
-    for frame, indices in missed.items():
+    vain: dict[int, set[int]] = {}
+    for frame, index in [*found.missed, *found.overruled]:
+        vain.setdefault(frame + plan.offset, set()).add(index)
+    overruled = {(frame + plan.offset, index) for frame, index in found.overruled}
+    done = Done(unrelated={frame + plan.offset for frame in found.unrelated}, bare={frame + plan.offset for frame in found.bare})
+    for frame, indices in vain.items():
+        # A shape with several clicks counts as soon as one of them paints.
         hit = {click.stroke for k, click in enumerate(plan.clicks[frame]) if k not in indices}
-        if any(plan.clicks[frame][k].stroke not in hit for k in indices):
+        lost = {k for k in indices if plan.clicks[frame][k].stroke not in hit}
+        if any((frame, k) in overruled for k in lost):
+            done.overruled.add(frame)
+        if any((frame, k) not in overruled for k in lost):
             done.missed.add(frame)
     return done
 

@@ -93,6 +93,11 @@ class Filled:
     `Session.fill` fills it."""
     unrelated: list[int] = field(default_factory=list)
     """Frames that stay unpainted, since no painted drawing shows the same. Only `Session.fill` fills it."""
+    overruled: list[tuple[int, int]] = field(default_factory=list)
+    """Clicks that paint nothing because a later click has given their region another colour: frame, and index among the clicks of that
+    frame. Only `Session.fill` fills it."""
+    bare: list[int] = field(default_factory=list)
+    """Frames with hardly any regions for what was clicked: their lines were probably not found. Only `Session.fill` fills it."""
 
     def on(self, frame: int) -> list[Region]:
         """The regions of a frame; later ones lie over earlier ones. There are none on a frame that was not painted."""

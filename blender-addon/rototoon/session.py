@@ -221,8 +221,9 @@ class Session:
                 self.set_fills(before)
             raise
         report = json.loads(told)
-        missed = [(own["frame"], own["click"]) for own in report["missed"]]
-        return Filled(*regions, missed, [own["frame"] for own in report["frames"] if not own["related"]])
+        missed, overruled = ([(own["frame"], own["click"]) for own in report[name]] for name in ("missed", "overruled"))
+        unrelated = [own["frame"] for own in report["frames"] if not own["related"]]
+        return Filled(*regions, missed, unrelated, overruled, [own["frame"] for own in report["frames"] if own["bare"]])
 
     # -- results -------------------------------------------------------------------------------------------------
 

@@ -50,6 +50,8 @@ class Drawn:
     """Number of traced drawings that the artist had changed; they are keys now."""
     breaks: tuple[int, ...]
     """Scene frames on which many strokes end or begin: identity may be lost there."""
+    bare: tuple[int, ...] = ()
+    """Scene frames on which no line or hardly any was found, rising."""
 
 
 @told
@@ -108,7 +110,7 @@ def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     worker = tracing.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))
-    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept, tuple(sorted(done.breaks)))
+    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept, tuple(sorted(done.breaks)), tuple(sorted(done.bare)))
 
 
 @told

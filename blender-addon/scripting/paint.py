@@ -54,6 +54,10 @@ class Painted:
     """Scene frames on which a shape of the artist lies on a line, rising."""
     unrelated: tuple[int, ...]
     """Scene frames that no painted drawing resembles, rising. They stay unpainted."""
+    overruled: tuple[int, ...] = ()
+    """Scene frames with a shape of the artist whose region another shape fills, rising: no line was found between the two."""
+    bare: tuple[int, ...] = ()
+    """Scene frames with hardly any regions, rising: their lines were probably not found."""
 
 
 @told
@@ -100,8 +104,9 @@ def fill_drawings(
     worker = filling.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(filling.finishing(ob, plan, worker.result))
-    painted, missed, unrelated = (tuple(sorted(each)) for each in (done.frames, done.missed, done.unrelated))
-    return Painted(done.regions, painted, dict(sorted(done.doubtful.items())), missed, unrelated)
+    named = done.frames, done.missed, done.unrelated, done.overruled, done.bare
+    painted, *others = (tuple(sorted(each)) for each in named)
+    return Painted(done.regions, painted, dict(sorted(done.doubtful.items())), *others)
 
 
 @told

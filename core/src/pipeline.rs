@@ -4,6 +4,7 @@
 //! This is the only module that knows all stages. The result of a stage enters the document completely. After an error,
 //! or when cancelled, the document is unchanged.
 
+mod bare;
 mod breakdown;
 mod check;
 mod contrast;

@@ -109,6 +109,8 @@ class Painted:
     start: int
     missed: list = field(default_factory=list)
     unrelated: list = field(default_factory=list)
+    overruled: list = field(default_factory=list)
+    bare: list = field(default_factory=list)
 
     def on(self, frame):
         """The regions of a frame."""

@@ -162,6 +162,17 @@ def test_a_drawing_that_was_scanned_twice_is_held(addon, film, tmp_path):
     assert list(kinds(addon, film, "Lines")) == [1, 3, 5]
 
 
+def test_frames_without_lines_are_said(addon, film, pictures, tmp_path):  # noqa: F811
+    blank = np.full_like(ls.picture(0), 250)
+    for number in range(1, 7):
+        write_png(tmp_path / f"line_{number:03}.png", blank if number in (3, 5) else ls.picture(number - 1))
+    film.rototoon.pattern = str(tmp_path / "line_%03d.png")
+    bpy.ops.rototoon.trace_drawing()
+    told = "no line or hardly any was found on frames 3 and 5; a higher Sensitivity finds fainter ink"
+    assert told in said(addon).warnings
+    assert addon("scripting").trace_drawing(film).bare == (3, 5)
+
+
 def test_frames_on_which_strokes_are_lost_are_said(addon, film, fake, monkeypatch):
     tracer = fake.Tracer
 

@@ -59,6 +59,13 @@ def read(addon, ob, frame):
     return addon("blender.strokes").read(handle_of(addon, ob, LAYER, frame))
 
 
+def test_shapes_without_a_line_between_them_are_told(addon, clicked):
+    assert bpy.ops.rototoon.fill_drawings(sensitivity=0.1) == {"FINISHED"}
+    between, bare, *_ = said(addon).warnings
+    assert between == "no line was found between shapes of yours of other colours, so one of them fills both: frame 1"
+    assert bare == "hardly any region was found: frames 2 to 6; a higher Sensitivity finds fainter lines"
+
+
 def test_the_bucket_fills_regions_of_the_picture(addon, clicked):
     assert kinds(addon, clicked, LAYER) == {1: "KEYFRAME"}
     names = [layer.name for layer in clicked.data.layers]

@@ -85,6 +85,9 @@ def test_doubts_and_what_was_not_painted_are_told(film):
         assert doubt == fills.Doubt(doubt.track, [1, 2, 3])
         assert [region.doubtful for region in filled.on(1)].count(True) == 1
         assert session.fill(confidence=0.5).doubts() == [], "clicks of the document serve, and doubts stay unpainted"
+        assert filled.overruled == [] and filled.bare == []
+        twice = session.fill([Click(0, CLICKS[0].at, RED), *CLICKS])
+        assert twice.overruled == [(0, 0)], "the click that came first"
 
 
 def test_the_constant_is_that_of_the_library(film):

@@ -88,6 +88,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
     def finish(self, _context, work):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
         self.warn(where_to_look(done))
+        self.warn(where_nothing_is(done))
         self.warn(doubts.told(done.confidence))
         return told(done)
 
@@ -102,6 +103,12 @@ def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
 def where_to_look(done: tracing.Done) -> str:
     """The frames on which many strokes end or begin; empty if there are none."""
     return f"many strokes end or begin on {listed(sorted(done.breaks))}: look there, and give a drawing of yours" if done.breaks else ""
+
+
+def where_nothing_is(done: tracing.Done) -> str:
+    """The frames on which hardly any line was found; empty if there are none."""
+    frames = "frame" if len(done.bare) == 1 else "frames"
+    return f"no line or hardly any was found on {frames} {listed(sorted(done.bare))}; a higher Sensitivity finds fainter ink" if done.bare else ""
 
 
 def told(done: tracing.Done) -> str:

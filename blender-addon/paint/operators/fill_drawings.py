@@ -31,6 +31,9 @@ class ROTOTOON_OT_fill_drawings(Framed, Sensitive, Long, OnFootage, bpy.types.Op
         done = yield from filling.finishing(self._ob, self._plan, work.result)
         self.warn(f"a shape of yours lies on a line: {_named(done.missed)}" if done.missed else "")
         self.warn(f"not painted, since no drawing of yours shows the same: {_named(done.unrelated)}" if done.unrelated else "")
+        if done.overruled:
+            self.warn(f"no line was found between shapes of yours of other colours, so one of them fills both: {_named(done.overruled)}")
+        self.warn(f"hardly any region was found: {_named(done.bare)}; a higher Sensitivity finds fainter lines" if done.bare else "")
         self.warn(_doubts(done))
         return f"{counted(done.regions, 'region')} on {counted(len(done.frames), 'frame')}"
 

@@ -4,7 +4,7 @@ use crate::status::Failure;
 use crate::traced::{SENSITIVITY, within};
 use rototoon::geometry::Point;
 use rototoon::lines::{Options, Style};
-use rototoon::pipeline::{DOUBT, FillOptions, FillReport};
+use rototoon::pipeline::{DOUBT, FillOptions, FillReport, MissedClick};
 use rototoon::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion};
 use rototoon::scene::FrameNumber;
 use serde::Deserialize;
@@ -107,10 +107,13 @@ pub fn fills_to_json(fills: &[FillClicks]) -> String {
 /// What painting tells, as JSON.
 pub fn report_to_json(report: &FillReport) -> String {
     let frames = report.frames.iter().map(
-        |own| json!({"frame": own.frame, "regions": own.regions, "doubtful": own.doubtful, "related": own.related}),
+        |own| json!({"frame": own.frame, "regions": own.regions, "doubtful": own.doubtful, "related": own.related, "bare": own.bare}),
     );
-    let missed = report.missed.iter().map(|own| json!({"frame": own.frame, "click": own.click}));
-    json!({"frames": frames.collect::<Value>(), "missed": missed.collect::<Value>()}).to_string()
+    let clicks = |clicks: &[MissedClick]| -> Value {
+        clicks.iter().map(|own| json!({"frame": own.frame, "click": own.click})).collect()
+    };
+    let (missed, overruled) = (clicks(&report.missed), clicks(&report.overruled));
+    json!({"frames": frames.collect::<Value>(), "missed": missed, "overruled": overruled}).to_string()
 }
 
 /// The JSON options of painting.
@@ -162,7 +165,7 @@ impl Asked {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon::pipeline::{FilledFrame, MissedClick};
+    use rototoon::pipeline::FilledFrame;
 
     #[test]
     fn regions_become_flat_arrays() {
@@ -222,10 +225,12 @@ mod tests {
 
     #[test]
     fn the_report_names_frames_and_clicks() {
-        let frames = vec![FilledFrame { frame: 2, regions: 3, doubtful: 1, related: true }];
-        let report = FillReport { frames, missed: vec![MissedClick { frame: 2, at: Point::ONE, entry: 1, click: 4 }] };
+        let frames = vec![FilledFrame { frame: 2, regions: 3, doubtful: 1, related: true, found: 3, bare: true }];
+        let click = |click: usize| vec![MissedClick { frame: 2, at: Point::ONE, entry: 1, click }];
+        let report = FillReport { frames, missed: click(4), overruled: click(5), ..FillReport::default() };
         let told: Value = serde_json::from_str(&report_to_json(&report)).unwrap();
-        let frame = json!({"frame": 2, "regions": 3, "doubtful": 1, "related": true});
-        assert_eq!(told, json!({"frames": [frame], "missed": [{"frame": 2, "click": 4}]}));
+        let frame = json!({"frame": 2, "regions": 3, "doubtful": 1, "related": true, "bare": true});
+        let clicks = [4, 5].map(|click| json!([{"frame": 2, "click": click}]));
+        assert_eq!(told, json!({"frames": [frame], "missed": clicks[0], "overruled": clicks[1]}));
     }
 }

@@ -68,8 +68,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         Ok(document)
     })?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
+    let told = pipeline::traced_lines(&traced, &document.scene.footage);
     project::save(document, from, to)?;
-    pipeline::traced_lines(&traced).iter().for_each(|text| line("note", text));
+    told.iter().for_each(|text| line("note", text));
     Ok(())
 }
 

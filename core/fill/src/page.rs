@@ -95,6 +95,14 @@ impl Page {
         (paint, missed)
     }
 
+    /// The clicks that lie in a region which a later click has given another colour: no line was found between the two.
+    pub fn overruled(&self, paint: &Paint, clicks: &[Click]) -> Vec<usize> {
+        let other = |click: &Click| {
+            self.regions.at(click.at).is_some_and(|region| paint.colour(region).is_some_and(|own| own != click.colour))
+        };
+        (0..clicks.len()).filter(|&k| other(&clicks[k])).collect()
+    }
+
     /// Splits regions between places.
     pub(crate) fn close(&mut self, leaks: &[(usize, Vec<Point>)]) {
         leaks.iter().for_each(|(region, places)| self.regions.split(*region, places));

@@ -1,9 +1,10 @@
 //! Which traced strokes deserve a look, and where.
 
+use super::bare;
 use super::report::runs;
 use crate::project::traced::TracedDrawing;
-use crate::scene::FrameNumber;
 use crate::scene::outcome::Verdict;
+use crate::scene::{Footage, FrameNumber};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Strokes that are named one by one, at most: those that are in doubt on most frames.
@@ -34,8 +35,9 @@ pub fn doubts(drawings: &[TracedDrawing]) -> Vec<Doubt> {
     found.into_values().collect()
 }
 
-/// What a person is told of traced drawings, a line each: how much was traced, and which strokes are in doubt.
-pub fn traced_lines(drawings: &[TracedDrawing]) -> Vec<String> {
+/// What a person is told of traced drawings, a line each: how much was traced, on which frames hardly anything was found, and which
+/// strokes are in doubt.
+pub fn traced_lines(drawings: &[TracedDrawing], footage: &Footage) -> Vec<String> {
     let numbers: BTreeSet<usize> = drawings.iter().flat_map(|d| d.strokes.iter().map(|s| s.track)).collect();
     let doubts = doubts(drawings);
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
@@ -54,6 +56,7 @@ pub fn traced_lines(drawings: &[TracedDrawing]) -> Vec<String> {
         format!("stroke {}: {}", doubt.track, places.join("; "))
     };
     let mut lines = vec![first];
+    lines.extend(bare::lines(drawings, footage.height));
     lines.extend(worst.iter().map(line));
     if doubts.len() > NAMED {
         lines.push(format!("{} more strokes are in doubt on fewer frames", doubts.len() - NAMED));
@@ -64,11 +67,18 @@ pub fn traced_lines(drawings: &[TracedDrawing]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
     use crate::project::traced::TracedStroke;
 
+    fn footage() -> Footage {
+        Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 100, height: 100, held: false }
+    }
+
     fn drawing(frame: FrameNumber, strokes: &[(usize, Option<f64>)]) -> TracedDrawing {
-        let stroke =
-            |&(track, confidence): &(usize, Option<f64>)| TracedStroke { track, confidence, ..TracedStroke::default() };
+        let stroke = |&(track, confidence): &(usize, Option<f64>)| {
+            let points = vec![Point::ZERO, Point::new(50.0, 0.0)];
+            TracedStroke { track, confidence, points, ..TracedStroke::default() }
+        };
         TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
     }
 
@@ -85,15 +95,20 @@ mod tests {
             "stroke 0: doubtful: 6",
             "stroke 1: doubtful: 4-5; lost: 6",
         ];
-        assert_eq!(traced_lines(&drawings), lines);
-        assert_eq!(traced_lines(&drawings[..1]), ["2 strokes on 1 frame"]);
+        assert_eq!(traced_lines(&drawings, &footage()), lines);
+        assert_eq!(traced_lines(&drawings[..1], &footage()), ["2 strokes on 1 frame"]);
+        let blank = TracedDrawing { frame: 3, strokes: Vec::new() };
+        assert_eq!(
+            traced_lines(&[blank], &footage())[1],
+            "frame 3: no line was found; a higher --sensitivity finds fainter ink"
+        );
     }
 
     #[test]
     fn the_worst_of_many_strokes_are_named() {
         let all: Vec<(usize, Option<f64>)> =
             (0..30).map(|track| (track, Some(if track < 10 { 0.7 } else { 0.2 }))).collect();
-        let lines = traced_lines(&[drawing(0, &all)]);
+        let lines = traced_lines(&[drawing(0, &all)], &footage());
         assert_eq!(
             (lines.len(), &lines[1][..], &lines[21][..]),
             (22, "stroke 10: lost: 0", "10 more strokes are in doubt on fewer frames")

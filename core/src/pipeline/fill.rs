@@ -7,19 +7,20 @@
 
 #[cfg(test)]
 mod tests;
+mod told;
 
-use super::holds::Holds;
+pub use told::{FillReport, FilledFrame, MissedClick};
+
+use super::holds::{Holds, Stretch};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
 use crate::fill::{Click, Page, Paint, Source, carry, fills};
-use crate::geometry::Point;
 use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
 use crate::scene::{Colour, FrameNumber, FrameSource, Progress};
 use std::collections::BTreeMap;
-use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -36,76 +37,6 @@ pub struct FillOptions {
     pub lines: Options,
     /// Regions whose colour has a lower confidence stay unpainted, 0 to 1.
     pub confidence: f64,
-}
-
-/// What became of a frame.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct FilledFrame {
-    /// The frame.
-    pub frame: FrameNumber,
-    /// The number of painted regions.
-    pub regions: usize,
-    /// The number of regions whose colour is probably wrong: their confidence is below 0.5.
-    pub doubtful: usize,
-    /// Whether the drawing shows the same as a painted one. If not, nothing is painted.
-    pub related: bool,
-}
-
-/// A click that paints nothing: it lies on a line or outside of the picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MissedClick {
-    /// The frame.
-    pub frame: FrameNumber,
-    /// Where it is, in pixels.
-    pub at: Point,
-    /// Index of the frame's entry in the document's field `fills`.
-    pub entry: usize,
-    /// Index of the click among those of the frame.
-    pub click: usize,
-}
-
-/// Its place in the footage and in the document.
-impl fmt::Display for MissedClick {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { frame, at, entry, click } = self;
-        write!(f, "frame {frame}, pixel ({:.1}, {:.1}): the click fills[{entry}].regions[{click}]", at.x, at.y)
-    }
-}
-
-/// What became of all frames.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FillReport {
-    /// The frames, in order.
-    pub frames: Vec<FilledFrame>,
-    /// Clicks that paint nothing.
-    pub missed: Vec<MissedClick>,
-}
-
-impl FillReport {
-    /// What a person is told, a line each.
-    pub fn lines(&self) -> Vec<String> {
-        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-        let named = |frames: Vec<FrameNumber>| frames.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-        let regions = self.frames.iter().map(|frame| frame.regions).sum();
-        let doubtful: usize = self.frames.iter().map(|frame| frame.doubtful).sum();
-        let frames = counted(self.frames.len(), "frame");
-        let mut lines = vec![format!("{} painted on {frames}, {doubtful} in doubt", counted(regions, "region"))];
-        let mut worst: Vec<&FilledFrame> = self.frames.iter().filter(|frame| frame.doubtful > 0).collect();
-        worst.sort_by_key(|frame| (std::cmp::Reverse(frame.doubtful), frame.frame));
-        if let Some(worst) = worst.first() {
-            lines.push(format!("most doubts on frame {}: {}", worst.frame, counted(worst.doubtful, "region")));
-        }
-        let other: Vec<FrameNumber> = self.frames.iter().filter(|f| !f.related).map(|f| f.frame).collect();
-        if !other.is_empty() {
-            lines.push(format!("not painted, since no painted drawing shows the same: frame {}", named(other)));
-        }
-        lines.extend(
-            self.missed
-                .iter()
-                .map(|place| format!("{place} lies on a line or outside of the picture, so it paints nothing")),
-        );
-        lines
-    }
 }
 
 /// Paints the drawings of a document in `folder` by the clicks in its field `fills`, and puts the regions into its field `filled`. It runs on
@@ -144,6 +75,7 @@ pub fn fill(
     painting.run(&clicks, &range)?;
     let Painting { mut found, mut report, .. } = painting;
     report.missed.sort_by_key(|missed| (missed.entry, missed.click));
+    report.overruled.sort_by_key(|missed| (missed.entry, missed.click));
     found.retain(|drawing| range.contains(&drawing.frame));
     let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
     keep_apart(&mut found, &kept);
@@ -151,6 +83,7 @@ pub fn fill(
     found.sort_by_key(|drawing| drawing.frame);
     report.frames.retain(|frame| range.contains(&frame.frame));
     report.frames.sort_by_key(|frame| frame.frame);
+    report.mark_bare();
     document.set_filled(&found);
     Ok(report)
 }
@@ -229,6 +162,14 @@ struct Painted {
     paint: Paint,
 }
 
+/// The clicks of a frame that paint nothing, by their places among its clicks.
+struct InVain {
+    /// They lie on a line or outside of the picture.
+    missed: Vec<usize>,
+    /// A later click fills their region.
+    overruled: Vec<usize>,
+}
+
 /// Painting at work.
 struct Painting<'a> {
     frames: &'a Sequence,
@@ -254,8 +195,10 @@ impl Painting<'_> {
         let (model, key, missed) = self.model(clicks)?;
         let looked_at = key.frame.min(*range.start())..=key.frame.max(*range.end());
         gaps::none(self.frames, looked_at.clone())?;
-        self.holds = Holds::of(self.frames, self.frames.footage().first, &looked_at, self.progress)?;
-        self.all = self.done + looked_at.count() + clicks.len();
+        self.all = self.done + looked_at.clone().count() + clicks.len();
+        let done = self.share();
+        let search = Stretch { progress: self.progress, step: "Painting", from: done, to: done };
+        self.holds = Holds::of(self.frames, self.frames.footage().first, &looked_at, &search)?;
         self.miss(&clicks[model], &missed);
         self.keep(&key);
         let before: Vec<_> = clicks[..model].iter().rev().collect();
@@ -266,9 +209,9 @@ impl Painting<'_> {
     }
 
     /// The model drawing, its place among the frames with clicks, and its clicks that paint nothing. Its regions have the first numbers.
-    fn model(&mut self, clicks: &[(usize, FillClicks)]) -> Result<(usize, Painted, Vec<usize>), PipelineError> {
+    fn model(&mut self, clicks: &[(usize, FillClicks)]) -> Result<(usize, Painted, InVain), PipelineError> {
         let none = self.next;
-        let mut best: Option<(usize, Painted, Vec<usize>, usize)> = None;
+        let mut best: Option<(usize, Painted, InVain, usize)> = None;
         for (k, own) in clicks.iter().enumerate() {
             self.next = none;
             let (key, missed) = self.key(own)?;
@@ -310,10 +253,12 @@ impl Painting<'_> {
     }
 
     /// A frame painted by its clicks alone, and the clicks that paint nothing.
-    fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, Vec<usize>), PipelineError> {
+    fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, InVain), PipelineError> {
         let mut page = self.look(clicks.1.frame)?;
-        let (paint, missed) = page.painted(&self.clicks(&clicks.1), self.palette.len(), &mut self.next);
-        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, missed))
+        let own = self.clicks(&clicks.1);
+        let (paint, missed) = page.painted(&own, self.palette.len(), &mut self.next);
+        let in_vain = InVain { missed, overruled: page.overruled(&paint, &own) };
+        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, in_vain))
     }
 
     /// A frame painted by what is known beside it, and then by its own clicks.
@@ -325,7 +270,7 @@ impl Painting<'_> {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
-        self.miss(clicks, &missed);
+        self.miss(clicks, &InVain { missed, overruled: page.overruled(&paint, &own) });
         Ok(Painted { frame: clicks.1.frame, page: page.into(), paint })
     }
 
@@ -344,7 +289,10 @@ impl Painting<'_> {
                     known.last = Painted { frame, page: page.into(), paint };
                     self.keep(&known.last);
                 }
-                None => self.report.frames.push(FilledFrame { frame, ..FilledFrame::default() }),
+                None => {
+                    let found = page.regions();
+                    self.report.frames.push(FilledFrame { frame, found, ..FilledFrame::default() });
+                }
             }
         }
         Ok(())
@@ -356,9 +304,14 @@ impl Painting<'_> {
     }
 
     fn progress(&mut self) -> Result<(), PipelineError> {
-        self.progress.report("Painting", (self.done as f64 / self.all.max(1) as f64).min(1.0))?;
+        self.progress.report("Painting", self.share())?;
         self.done += 1;
         Ok(())
+    }
+
+    /// The share of the work that is done.
+    fn share(&self) -> f64 {
+        (self.done as f64 / self.all.max(1) as f64).min(1.0)
     }
 
     fn clicks(&self, clicks: &FillClicks) -> Vec<Click> {
@@ -366,10 +319,12 @@ impl Painting<'_> {
         clicks.clicks.iter().map(|click| Click { at: click.at, colour: number(&click.colour) }).collect()
     }
 
-    fn miss(&mut self, clicks: &(usize, FillClicks), missed: &[usize]) {
+    fn miss(&mut self, clicks: &(usize, FillClicks), in_vain: &InVain) {
         let (entry, frame) = (clicks.0, clicks.1.frame);
         let one = |&click: &usize| MissedClick { frame, at: clicks.1.clicks[click].at, entry, click };
-        self.report.missed.extend(missed.iter().map(one));
+        self.report.missed.extend(in_vain.missed.iter().map(one));
+        self.report.overruled.extend(in_vain.overruled.iter().map(one));
+        self.report.clicks.insert(frame, clicks.1.clicks.len());
     }
 
     /// Puts a painted drawing down.
@@ -386,7 +341,8 @@ impl Painting<'_> {
             fills(&painted.page, &painted.paint).into_iter().filter(sure).map(region).collect();
         let doubtful = regions.iter().filter(|region| region.confidence < DOUBT).count();
         let frame = painted.frame;
-        self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related: true });
+        let (related, found) = (true, painted.page.regions());
+        self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related, found, bare: false });
         self.found.push(FilledDrawing { frame, regions });
     }
 }

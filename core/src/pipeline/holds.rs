@@ -10,11 +10,28 @@
 
 use super::PipelineError;
 use super::contrast::Contrast;
-use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Progress, Raster};
+use crate::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster};
 use crate::track;
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
+
+/// Share of tracing that the search takes, about.
+pub(super) const SHARE: f64 = 0.1;
+
+/// A stretch of a stage's progress: its step, and the shares at its ends.
+pub(super) struct Stretch<'a> {
+    pub progress: &'a dyn Progress,
+    pub step: &'static str,
+    pub from: f64,
+    pub to: f64,
+}
+
+impl Progress for Stretch<'_> {
+    fn report(&self, _: &str, done: f64) -> Result<(), Cancelled> {
+        self.progress.report(self.step, self.from + (self.to - self.from) * done)
+    }
+}
 
 /// The pictures of a film in which each drawing has one picture.
 pub(super) struct Holds<'a> {
@@ -64,5 +81,47 @@ impl<'a> Holds<'a> {
 impl FrameSource for Holds<'_> {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
         self.frames.picture(self.first(frame))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Silent;
+
+    /// A ring of light pencil with grain. From frame 2 on there is a line in it, and on frame 4 the ring has moved by half a pixel.
+    struct Pencil;
+
+    impl FrameSource for Pencil {
+        fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+            let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(frame as u64 + 1);
+            let mut picture = Raster::new(320, 270, [0.0; 3]);
+            for y in 0..270 {
+                for (x, colour) in picture.row_mut(y).iter_mut().enumerate() {
+                    let (x, y) = (x as f32 + 0.5 - if frame == 4 { 0.5 } else { 0.0 }, y as f32 + 0.5);
+                    let ring = ((x - 160.0).hypot(y - 135.0) - 80.0).abs();
+                    let line = if frame >= 2 && (140.0..170.0).contains(&x) { (y - 135.0).abs() } else { 99.0 };
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    let grain = (state >> 40) as f32 / (1u64 << 24) as f32 - 0.5;
+                    *colour = [0.95 - 0.2 * (1.5 - ring.min(line)).clamp(0.0, 1.0) + 0.02 * grain; 3];
+                }
+            }
+            Ok(Arc::new(picture))
+        }
+    }
+
+    #[test]
+    fn a_new_line_of_light_pencil_is_a_new_drawing() {
+        let holds = Holds::of(&Pencil, 0, &(0..=4), &Silent).unwrap();
+        let first: Vec<FrameNumber> = (0..=4).map(|frame| holds.first(frame)).collect();
+        assert_eq!(first, [0, 0, 2, 2, 4]);
+    }
+
+    #[test]
+    fn where_a_drawing_begins_does_not_depend_on_the_range() {
+        let holds = Holds::of(&Pencil, 0, &(3..=4), &Silent).unwrap();
+        assert_eq!((holds.first(3), holds.first(4)), (2, 4));
+        assert!(!holds.is_held(3), "no frame of the range is before it");
+        assert!(Holds::of(&Pencil, 0, &(2..=3), &Silent).unwrap().is_held(3));
     }
 }

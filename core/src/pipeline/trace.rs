@@ -9,7 +9,7 @@ mod tests;
 pub use kept::TraceMemory;
 pub use on_keys::trace_drawings;
 
-use super::holds::Holds;
+use super::holds::{Holds, SHARE, Stretch};
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
@@ -66,7 +66,8 @@ pub fn trace(
     let beside = beside(&drawn, &earlier, &range);
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
-    let holds = Holds::of(&sequence, footage.first, &looked_at(&beside, &range), progress)?;
+    let search = Stretch { progress, step: "Tracing", from: 0.0, to: SHARE };
+    let holds = Holds::of(&sequence, footage.first, &looked_at(&beside, &range), &search)?;
     let all = looks(&drawn, &beside, &range, &holds);
     let mut tracing = Tracing {
         frames: &holds,
@@ -328,7 +329,7 @@ impl Tracing<'_> {
 
     /// The share of the work that is done.
     fn share(&self) -> f64 {
-        (self.done as f64 / self.all.max(1) as f64).min(1.0)
+        SHARE + (1.0 - SHARE) * (self.done as f64 / self.all.max(1) as f64).min(1.0)
     }
 }
 

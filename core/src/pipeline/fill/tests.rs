@@ -280,3 +280,56 @@ fn a_held_drawing_has_the_regions_of_the_frame_before() {
     }
     assert_ne!(filled[1].regions, filled[2].regions);
 }
+
+#[test]
+fn clicks_without_a_line_between_them_and_frames_without_lines_are_told() {
+    // From frame 2 on nothing is drawn. On frame 0 two clicks of other colours follow each other to the same places.
+    let ink = |frame, p| if frame < 2 { moving(frame, p) } else { 99.0 };
+    let twice = [
+        click((5.0, 5.0), RED),
+        click((25.0, 75.0), BLUE),
+        click((60.0, 75.0), PAPER),
+        click((5.0, 5.0), PAPER),
+        click((25.0, 75.0), RED),
+        click((60.0, 75.0), BLUE),
+    ];
+    let mut film = Film::new(3, ink).clicked(&[(0, &twice)]);
+    let report = film.fill().unwrap();
+    assert_eq!(report.overruled.iter().map(|own| (own.frame, own.click)).collect::<Vec<_>>(), [(0, 0), (0, 1), (0, 2)]);
+    assert_eq!(
+        report.frames.iter().map(|own| (own.frame, own.bare)).collect::<Vec<_>>(),
+        [(0, false), (1, false), (2, true), (3, true)]
+    );
+    let lines = report.lines();
+    let vain = "frame 0: 3 of 6 clicks paint nothing, since a later click fills the same region: the line between them was not found, \
+                or is open";
+    assert!(lines.iter().any(|line| line == vain), "{lines:?}");
+    let bare = "frames 2-3: hardly any region, but 6 clicks on one frame: a higher --sensitivity finds fainter lines";
+    assert!(lines.iter().any(|line| line == bare), "{lines:?}");
+    let sound = Film::new(1, moving).clicked(&[(0, &own_clicks())]).fill().unwrap();
+    assert!(sound.overruled.is_empty() && sound.lines().len() == 1, "{:?}", sound.lines());
+}
+
+#[test]
+fn the_share_that_is_done_never_falls() {
+    struct Shares(std::sync::Mutex<Vec<f64>>);
+    impl Progress for Shares {
+        fn report(&self, _: &str, done: f64) -> Result<(), crate::scene::Cancelled> {
+            self.0.lock().unwrap().push(done);
+            Ok(())
+        }
+    }
+    let mut film = Film::new(4, moving).clicked(&[(0, &own_clicks())]);
+    let rises = |work: &mut dyn FnMut(&Shares)| {
+        let shares = Shares(std::sync::Mutex::default());
+        work(&shares);
+        let shares = shares.0.into_inner().unwrap();
+        assert!(shares.len() > 5 && shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
+    };
+    rises(&mut |shares| {
+        fill(&mut film.document, film.folder.path(), None, &FillOptions::default(), shares).unwrap();
+    });
+    rises(&mut |shares| {
+        super::super::trace(&mut film.document, film.folder.path(), None, &Options::default(), None, shares).unwrap();
+    });
+}

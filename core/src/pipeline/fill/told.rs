@@ -1,0 +1,123 @@
+//! What painting tells: how many regions, which are in doubt, and what was in vain.
+
+use super::super::report::runs;
+use crate::geometry::Point;
+use crate::scene::FrameNumber;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Least number of clicks on one frame from which frames with few regions are said.
+const MANY: usize = 4;
+/// How many times as many clicks there are as a bare frame has regions, at least.
+const BARE: usize = 4;
+
+/// What became of a frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FilledFrame {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// The number of painted regions.
+    pub regions: usize,
+    /// The number of regions whose colour is probably wrong: their confidence is below 0.5.
+    pub doubtful: usize,
+    /// Whether the drawing shows the same as a painted one. If not, nothing is painted.
+    pub related: bool,
+    /// The number of regions that the drawing has.
+    pub found: usize,
+    /// Whether these are hardly any, for what was clicked: its lines were probably not found.
+    pub bare: bool,
+}
+
+/// A click that paints nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MissedClick {
+    /// The frame.
+    pub frame: FrameNumber,
+    /// Where it is, in pixels.
+    pub at: Point,
+    /// Index of the frame's entry in the document's field `fills`.
+    pub entry: usize,
+    /// Index of the click among those of the frame.
+    pub click: usize,
+}
+
+/// Its place in the footage and in the document.
+impl fmt::Display for MissedClick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { frame, at, entry, click } = self;
+        write!(f, "frame {frame}, pixel ({:.1}, {:.1}): the click fills[{entry}].regions[{click}]", at.x, at.y)
+    }
+}
+
+/// What became of all frames.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FillReport {
+    /// The frames, in order.
+    pub frames: Vec<FilledFrame>,
+    /// Clicks that lie on a line or outside of the picture.
+    pub missed: Vec<MissedClick>,
+    /// Clicks in a region that a later click has given another colour.
+    pub overruled: Vec<MissedClick>,
+    /// By frame the number of its clicks.
+    pub clicks: BTreeMap<FrameNumber, usize>,
+}
+
+impl FillReport {
+    /// What a person is told, a line each.
+    pub fn lines(&self) -> Vec<String> {
+        let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+        let named = |frames: Vec<FrameNumber>| frames.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+        let regions = self.frames.iter().map(|frame| frame.regions).sum();
+        let doubtful: usize = self.frames.iter().map(|frame| frame.doubtful).sum();
+        let frames = counted(self.frames.len(), "frame");
+        let mut lines = vec![format!("{} painted on {frames}, {doubtful} in doubt", counted(regions, "region"))];
+        let mut worst: Vec<&FilledFrame> = self.frames.iter().filter(|frame| frame.doubtful > 0).collect();
+        worst.sort_by_key(|frame| (std::cmp::Reverse(frame.doubtful), frame.frame));
+        if let Some(worst) = worst.first() {
+            lines.push(format!("most doubts on frame {}: {}", worst.frame, counted(worst.doubtful, "region")));
+        }
+        let other: Vec<FrameNumber> = self.frames.iter().filter(|f| !f.related).map(|f| f.frame).collect();
+        if !other.is_empty() {
+            lines.push(format!("not painted, since no painted drawing shows the same: frame {}", named(other)));
+        }
+        lines.extend(self.overruled_lines());
+        let bare: Vec<FrameNumber> = self.frames.iter().filter(|f| f.bare).map(|f| f.frame).collect();
+        if !bare.is_empty() {
+            let most = self.clicks.values().max().copied().unwrap_or(0);
+            let told = format!(
+                "hardly any region, but {most} clicks on one frame: a higher --sensitivity finds fainter lines"
+            );
+            let them = if bare.len() == 1 { "frame" } else { "frames" };
+            lines.push(format!("{them} {}: {told}", runs(&bare)));
+        }
+        lines.extend(
+            self.missed
+                .iter()
+                .map(|place| format!("{place} lies on a line or outside of the picture, so it paints nothing")),
+        );
+        lines
+    }
+
+    /// A line for each frame with clicks whose region another click fills.
+    fn overruled_lines(&self) -> Vec<String> {
+        let mut counts: BTreeMap<FrameNumber, usize> = BTreeMap::new();
+        self.overruled.iter().for_each(|own| *counts.entry(own.frame).or_default() += 1);
+        let line = |(frame, count): (FrameNumber, usize)| {
+            let all = self.clicks.get(&frame).copied().unwrap_or(count);
+            let paint = if count == 1 { "paints" } else { "paint" };
+            format!(
+                "frame {frame}: {count} of {all} clicks {paint} nothing, since a later click fills the same region: the line between \
+                 them was not found, or is open"
+            )
+        };
+        counts.into_iter().map(line).collect()
+    }
+
+    /// Marks the frames that have hardly any region.
+    pub(super) fn mark_bare(&mut self) {
+        let most = self.clicks.values().max().copied().unwrap_or(0);
+        for own in &mut self.frames {
+            own.bare = most >= MANY && own.found * BARE <= most;
+        }
+    }
+}
