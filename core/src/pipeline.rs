@@ -23,6 +23,7 @@ mod reshape;
 mod shapeless;
 mod sheet;
 mod sheet_drawn;
+mod sheet_marks;
 pub mod spans;
 mod strokes;
 mod style;

@@ -1,7 +1,9 @@
 //! A contact sheet: small pictures of the frames with their contours and strokes, over their painted regions, in the order of
 //! time. Frames on which a part or a stroke is lost have a red border, those on which one or a region is doubtful an amber one.
+//! Lost and doubtful strokes have their numbers.
 
 use super::sheet_drawn::Contents;
+use super::sheet_marks::{DOUBTFUL, LOST, PLAIN, put, write, write_strokes};
 use super::{PipelineError, frames, gaps, memory};
 use crate::image::resize::resize;
 use crate::project::Document;
@@ -28,8 +30,6 @@ const STRIP: usize = 21;
 const LINE: f64 = 1.6;
 /// Side of a dot of a digit in pixels.
 const DOT: usize = 3;
-/// Colour behind the pictures, and of the border of a frame that needs no look.
-const PLAIN: Colour = [0.16, 0.16, 0.17];
 /// Colour of a frame's number.
 const INK: Colour = [0.95; 3];
 
@@ -98,10 +98,11 @@ fn cell(scene: &Scene, frame: FrameNumber, below: &Raster<Colour>, verdict: Opti
     let scale = (SIZE as f64 / below.width().max(below.height()) as f64).min(1.0);
     let options = OverlayOptions { line_width: LINE / scale, points: false, confidence: true };
     let small = |length: usize| ((length as f64 * scale).round() as usize).max(1);
-    let drawn = resize(&overlay(scene, frame, below, None, &options), small(below.width()), small(below.height()));
+    let mut drawn = resize(&overlay(scene, frame, below, None, &options), small(below.width()), small(below.height()));
+    write_strokes(&mut drawn, scene, frame, scale);
     let border = match verdict {
-        Some(Verdict::Lost) => [0.9, 0.1, 0.1],
-        Some(Verdict::Doubtful) => [0.95, 0.65, 0.1],
+        Some(Verdict::Lost) => LOST,
+        Some(Verdict::Doubtful) => DOUBTFUL,
         _ => PLAIN,
     };
     let number = frame.to_string();
@@ -110,7 +111,7 @@ fn cell(scene: &Scene, frame: FrameNumber, below: &Raster<Colour>, verdict: Opti
     let mut cell = Raster::new(inside + 2 * BORDER, drawn.height() + 2 * BORDER + STRIP, border);
     put(&mut cell, &Raster::new(inside, drawn.height() + STRIP, PLAIN), (BORDER, BORDER));
     put(&mut cell, &drawn, (BORDER + (inside - drawn.width()) / 2, BORDER + STRIP));
-    write(&mut cell, &number, (BORDER + DOT, BORDER + DOT));
+    write(&mut cell, &number, (BORDER + DOT, BORDER + DOT), DOT, INK);
     cell
 }
 
@@ -123,44 +124,6 @@ fn arranged(cells: &[Raster<Colour>]) -> Raster<Colour> {
         put(&mut sheet, cell, (GAP + i % COLUMNS * width, GAP + i / COLUMNS * height));
     }
     sheet
-}
-
-/// Copies a picture into a larger one, as far as it fits.
-fn put(whole: &mut Raster<Colour>, picture: &Raster<Colour>, (left, top): (usize, usize)) {
-    let width = picture.width().min(whole.width().saturating_sub(left));
-    let left = left.min(whole.width());
-    for y in 0..picture.height().min(whole.height().saturating_sub(top)) {
-        whole.row_mut(top + y)[left..left + width].copy_from_slice(&picture.row(y)[..width]);
-    }
-}
-
-/// The digits and the minus sign in dots, five rows of three.
-fn dots(sign: char) -> [u8; 5] {
-    match sign {
-        '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
-        '1' => [0b010, 0b110, 0b010, 0b010, 0b111],
-        '2' => [0b111, 0b001, 0b111, 0b100, 0b111],
-        '3' => [0b111, 0b001, 0b111, 0b001, 0b111],
-        '4' => [0b101, 0b101, 0b111, 0b001, 0b001],
-        '5' => [0b111, 0b100, 0b111, 0b001, 0b111],
-        '6' => [0b111, 0b100, 0b111, 0b101, 0b111],
-        '7' => [0b111, 0b001, 0b010, 0b010, 0b010],
-        '8' => [0b111, 0b101, 0b111, 0b101, 0b111],
-        '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
-        _ => [0, 0, 0b111, 0, 0],
-    }
-}
-
-/// Writes a number, from its top left corner.
-fn write(picture: &mut Raster<Colour>, number: &str, (left, top): (usize, usize)) {
-    let dot = Raster::new(DOT, DOT, INK);
-    for (i, sign) in number.chars().enumerate() {
-        for (row, bits) in dots(sign).into_iter().enumerate() {
-            for column in (0..3).filter(|column| bits & (0b100 >> column) != 0) {
-                put(picture, &dot, (left + (4 * i + column) * DOT, top + row * DOT));
-            }
-        }
-    }
 }
 
 #[cfg(test)]
