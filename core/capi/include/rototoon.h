@@ -171,12 +171,14 @@ RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
 // per core. Regions of frames outside of `frames` stay in the document. It is an error if there is no click.
 //
 // `filled` has the regions of all frames, as `rototoon_session_filled` gives them. `report` is JSON: `{"frames":
-// [{"frame", "regions", "doubtful", "related"}], "missed": [{"frame", "click"}]}`.
+// [{"frame", "regions", "doubtful", "related", "bare"}], "missed": [{"frame", "click"}], "overruled": [{"frame", "click"}]}`.
 //
 // - `frames` are the frames that were looked at. `doubtful` is the number of regions whose colour is probably wrong.
-//   `related` is false if no painted drawing shows the same; such a frame stays unpainted.
+//   `related` is false if no painted drawing shows the same; such a frame stays unpainted. `bare` is true if the drawing has hardly any
+//   regions for what was clicked: its lines were probably not found.
 // - `missed` are the clicks that lie on a line or outside of the picture, and so paint nothing. `click` is the index
 //   among the clicks of its frame.
+// - `overruled` are the clicks that paint nothing because a later click has given their region another colour.
 RototoonStatus rototoon_session_fill(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
