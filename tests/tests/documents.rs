@@ -138,7 +138,7 @@ fn held_gaps_of_the_footage_are_read_written_and_checked() {
         errors(&with(r#""gaps": "hold""#)),
         [r#"p.json: footage.gaps: found "hold", expected "held", or no such field"#]
     );
-    assert_eq!(errors(&with(r#""gaps": true"#)), [r#"p.json: footage.gaps: found true, expected text"#]);
+    assert_eq!(errors(&with(r#""gaps": true"#)), [r#"p.json: footage.gaps: found true, expected a text"#]);
 }
 
 #[test]

@@ -36,7 +36,7 @@ impl Film {
             let path = self.folder.path().join(format!("{frame:02}.png"));
             let picture = crate::pictures::decode(&path, None).unwrap();
             let shade = |x: usize, y: usize| {
-                let dust = (x * 31 + y * 17 + frame as usize * 7) % 397 == 0;
+                let dust = (x * 31 + y * 17 + frame as usize * 7).is_multiple_of(397);
                 picture.get(x, y).map(|value| value - if dust { 0.04 } else { 0.0 })
             };
             let bytes = encode::colours(&Raster::from_fn(200, 150, shade), Format::Png).unwrap();
