@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xcf9e3af26e625f6d
+HEADER_HASH = 0xd57fa0645109a071
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -120,6 +120,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     ),
     "rototoon_skeleton": (
         (1, "skeleton_length", ctypes.c_size_t),
+    ),
+    "rototoon_clip_stance": (
+        (1, "clips_length", ctypes.c_size_t),
     ),
     "rototoon_import_motion": (
         (1, "motion_length", ctypes.c_size_t),
@@ -549,6 +552,13 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_skeleton.restype = ctypes.c_int32
     library.rototoon_skeleton.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_clip_stance.restype = ctypes.c_int32
+    library.rototoon_clip_stance.argtypes = [
         ctypes.c_void_p,
         ctypes.c_size_t,
         ctypes.c_void_p,

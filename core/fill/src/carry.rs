@@ -4,6 +4,10 @@
 //! sum over the sources, squared and divided by its total, is the probability of a colour. Sources are the artist's
 //! own drawings before and behind, and the last drawing that was painted: own drawings are right but far away, the last one is near
 //! but may be wrong. How sure each colour is says [`confidence`](crate::confidence).
+//!
+//! An artist's click on a drawing that was carried corrects a thing from there on. Its region is marked, and the mark is carried with the last
+//! drawing: the share q in M of marked regions, sharpened to q² ∕ (q² + (1 − q)²). About such a region the artist's other drawings have as much
+//! less to say.
 
 use crate::confidence::{evidence, of_one_colour, probability};
 use crate::layout::Layout;
@@ -37,8 +41,12 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
         }
     }
     let page = &*page;
-    let known: Vec<Said> =
+    let mut known: Vec<Said> =
         sources.iter().zip(&shifts).filter_map(|(source, both)| Some(said(source, page, both.as_ref()?))).collect();
+    let corrected = corrected(known.last()?);
+    if let Some((_, others)) = known.split_last_mut() {
+        others.iter_mut().for_each(|said| said.silent.clone_from(&corrected));
+    }
     let last = known.last()?;
     let palette = last.paint.colours.first()?.len();
     let mut paint = Paint::nothing(page.regions.count, palette);
@@ -59,12 +67,22 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
         paint.confidence.iter_mut().zip(shares).for_each(|(own, share)| *own = own.min(of_one_colour(share)));
     }
     number(&mut paint, last.paint, &last.relaxed.all, &page.layout, next);
+    paint.corrected = corrected;
     Some(paint)
+}
+
+/// For each region the probability that it is one which the artist corrected.
+fn corrected(last: &Said) -> Vec<f32> {
+    let marked = &last.paint.corrected;
+    let share = |row: &Vec<f32>| row.iter().zip(marked).map(|(m, marked)| m * marked).sum::<f32>().min(1.0);
+    let sharp = |q: f32| q * q / (q * q + (1.0 - q) * (1.0 - q));
+    last.relaxed.sure.iter().map(|row| sharp(share(row))).collect()
 }
 
 /// The probability of each colour of a region. `None` if no source has a colour for it.
 fn probabilities(known: &[Said], region: usize, palette: usize) -> Option<Vec<f32>> {
-    let sum = |c: usize| known.iter().map(|said| said.colours[region][c]).sum::<f32>();
+    let loud = |said: &Said| 1.0 - said.silent[region];
+    let sum = |c: usize| known.iter().map(|said| loud(said) * said.colours[region][c]).sum::<f32>();
     // Divided by the largest, so that their squares stay finite.
     let sums: Vec<f32> = (0..palette).map(sum).collect();
     let most = sums.iter().copied().fold(0.0, f32::max);
@@ -103,7 +121,8 @@ fn said<'a>(source: &Source<'a>, page: &Page, shifts: &Both) -> Said<'a> {
     let bare: Vec<f32> = source.paint.confidence.iter().map(bare).collect();
     let unpainted = relaxed.sure.iter().map(|row| row.iter().zip(&bare).skip(1).map(|(m, bare)| m * bare).sum());
     let unpainted = unpainted.collect();
-    Said { paint: source.paint, relaxed, colours, unpainted }
+    let silent = vec![0.0; page.regions.count + 1];
+    Said { paint: source.paint, relaxed, colours, unpainted, silent }
 }
 
 fn weighted(row: &[f32], colours: &Table) -> Vec<f32> {

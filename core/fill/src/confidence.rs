@@ -64,8 +64,8 @@ pub(crate) fn evidence(known: &[Said], layout: &Layout, paint: &Paint) -> Vec<Op
         colours.iter().zip(&paint.colours).map(|(c, row)| logit(c.map_or(0.0, |c| f64::from(row[c])))).collect();
     let of = |region: usize| {
         let colour = colours[region]?;
-        let all: Vec<Heard> =
-            known.iter().zip(&claims).map(|(said, claims)| hear(said, claims, region, colour)).collect();
+        let loud = known.iter().zip(&claims).filter(|(said, _)| said.silent[region] <= 0.5);
+        let all: Vec<Heard> = loud.map(|(said, claims)| hear(said, claims, region, colour)).collect();
         let mean = |value: fn(&Heard) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
         let least = |value: fn(&Heard) -> f64| all.iter().map(value).fold(f64::INFINITY, f64::min);
         let painted = least(|heard| heard.painted);
@@ -154,7 +154,13 @@ mod tests {
         let row = |row: [f32; 3]| [0.0].into_iter().chain(row).collect::<Vec<f32>>();
         let sure: Table = std::iter::once(vec![0.0; 4]).chain(sure.into_iter().map(row)).collect();
         let colours = sure.iter().map(|row| vec![row[1], row[2] + row[3]]).collect();
-        Said { paint, relaxed: Relaxed { all: sure.clone(), sure }, colours, unpainted: vec![0.0; 4] }
+        Said {
+            paint,
+            relaxed: Relaxed { all: sure.clone(), sure },
+            colours,
+            unpainted: vec![0.0; 4],
+            silent: vec![0.0; 4],
+        }
     }
 
     const CLEAR: [[f32; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -40,6 +40,8 @@ pub struct Paint {
     pub(crate) evidence: Vec<Option<Evidence>>,
     /// Share of the regions in which an artist clicked.
     pub(crate) clicked: f64,
+    /// For each region the probability that a click on a drawing that was carried gave its colour.
+    pub(crate) corrected: Vec<f32>,
 }
 
 impl Page {
@@ -67,7 +69,9 @@ impl Page {
     pub fn painted(&mut self, clicks: &[Click], palette: usize, next: &mut usize) -> (Paint, Vec<usize>) {
         self.split(clicks);
         let paint = Paint::nothing(self.regions.count, palette);
-        self.clicked(paint, clicks, next)
+        let (mut paint, missed) = self.clicked(paint, clicks, next);
+        paint.settle();
+        (paint, missed)
     }
 
     /// Clicks into a page whose regions have colours already. What was not clicked stays. The page must have been
@@ -89,6 +93,7 @@ impl Page {
             paint.colours[region][click.colour] = 1.0;
             paint.confidence[region] = 1.0;
             paint.evidence[region] = None;
+            paint.corrected[region] = 1.0;
             own.insert(region);
         }
         paint.clicked = own.len() as f64 / self.regions.count.max(1) as f64;
@@ -140,7 +145,13 @@ impl Paint {
             confidence: vec![0.0; regions + 1],
             evidence: vec![None; regions + 1],
             clicked: 0.0,
+            corrected: vec![0.0; regions + 1],
         }
+    }
+
+    /// From here on the clicks are no corrections of what was carried: the drawing is one from which others are painted.
+    pub fn settle(&mut self) {
+        self.corrected.fill(0.0);
     }
 
     /// The share of the regions in which an artist clicked, 0 to 1.

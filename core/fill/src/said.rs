@@ -14,4 +14,6 @@ pub(crate) struct Said<'a> {
     pub colours: Table,
     /// For each region, the share of regions without paint among those that it may be.
     pub unpainted: Vec<f32>,
+    /// For each region how far the source says nothing about it, 0 to 1, since a correction of the artist overrules it.
+    pub silent: Vec<f32>,
 }

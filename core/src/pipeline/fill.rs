@@ -230,7 +230,7 @@ impl Painting<'_> {
 
     /// Paints the frames on one side of the model drawing. The frames with clicks are in the order in which they come.
     fn side(&mut self, model: Painted, clicks: &[&(usize, FillClicks)], side: Side) -> Result<(), PipelineError> {
-        let mut known = Known { key: model.clone(), mended: None, next: None, last: model };
+        let mut known = Known { key: model.clone(), next: None, last: model };
         for own in clicks {
             let frame = own.1.frame;
             if side.is_over(known.last.frame) {
@@ -240,12 +240,11 @@ impl Painting<'_> {
             let between = side.between(known.last.frame, frame);
             self.outward(&mut known, between)?;
             known.next = None;
-            let painted = self.mended(&known, own)?;
-            self.keep(&painted);
-            if painted.paint.clicked() >= WHOLE {
-                known = Known { key: painted.clone(), mended: None, next: None, last: painted };
-            } else {
-                (known.mended, known.last) = (Some(painted.clone()), painted);
+            known.last = self.mended(&known, own)?;
+            self.keep(&known.last);
+            if known.last.paint.clicked() >= WHOLE {
+                known.last.paint.settle();
+                known.key = known.last.clone();
             }
         }
         let rest = side.between(known.last.frame, if side.ahead { side.end + 1 } else { side.end - 1 });
@@ -372,8 +371,6 @@ impl Side {
 struct Known {
     /// The model drawing, or a later one with as many clicks.
     key: Painted,
-    /// The last one with a few clicks, which mend what was carried there.
-    mended: Option<Painted>,
     /// The next one with as many clicks as a model drawing.
     next: Option<Painted>,
     /// The last painted one.
@@ -384,8 +381,8 @@ impl Known {
     /// The sources of the next drawing. The last one gives the numbers.
     fn sources(&self) -> Vec<Source<'_>> {
         let is_last = |painted: &Painted| Arc::ptr_eq(&painted.page, &self.last.page);
-        let others = [(Some(&self.key), true), (self.next.as_ref(), true), (self.mended.as_ref(), false)];
-        let before = others.into_iter().filter_map(|(painted, own)| Some((painted.filter(|p| !is_last(p))?, own)));
+        let others = [Some(&self.key), self.next.as_ref()];
+        let before = others.into_iter().flatten().filter(|painted| !is_last(painted)).map(|painted| (painted, true));
         let all = before.chain([(&self.last, is_last(&self.key))]);
         all.map(|(Painted { page, paint, .. }, own)| Source { page, paint, own }).collect()
     }

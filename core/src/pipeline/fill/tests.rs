@@ -162,6 +162,20 @@ fn a_click_on_a_later_frame_mends_it_and_what_follows() {
 }
 
 #[test]
+fn corrections_hold_to_the_end_of_the_film() {
+    let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
+    let (disc, rest) = ([click((x(2), 75.0), RED)], [click((x(5) - 35.0, 75.0), BLUE)]);
+    let mut film = Film::new(14, moving).clicked(&[(0, &own_clicks()), (2, &disc), (5, &rest)]);
+    film.fill().unwrap();
+    for frame in 0..=14 {
+        let colours = [0.0, -35.0].map(|beside| film.at(frame, (x(frame) + beside, 75.0)).unwrap().colour);
+        let wanted = [if frame < 2 { BLUE } else { RED }, if frame < 5 { RED } else { BLUE }];
+        assert_eq!(colours, wanted, "frame {frame}");
+        assert_eq!(film.at(frame, (3.0, 3.0)).unwrap().colour, PAPER, "frame {frame}");
+    }
+}
+
+#[test]
 fn a_click_before_the_model_drawing_mends_it_and_what_comes_before() {
     let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
     let model = [click((5.0, 5.0), PAPER), click((x(4) - 35.0, 75.0), RED), click((x(4), 75.0), BLUE)];
