@@ -89,7 +89,8 @@ fn missing_and_unreadable_frames_are_named() {
     let lines: Vec<_> = lines.lines().collect();
     assert_eq!(lines.len(), 4, "{lines:?}");
     let start = |frame: i32| format!("error: {}: footage: frame {frame}: ", project.display());
-    assert_eq!(lines[0], format!("{}no file {:?}", start(2), cartoon.frame(2)));
+    let way_out = r#"if the drawing before it is held, write "gaps": "held" in the document's footage"#;
+    assert_eq!(lines[0], format!("{}no file {:?}; {way_out}", start(2), cartoon.frame(2)));
     let sizes = "is 60x48 pixels, but the footage is 64x48";
     assert_eq!(lines[1], format!("{}{:?} {sizes}", start(3), cartoon.frame(3)));
     for (line, frame) in lines[2..].iter().zip([4, 5]) {
