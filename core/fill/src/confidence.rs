@@ -10,6 +10,8 @@
 //! | crowd | the logarithm of Σ M over all regions of the drawing, for the source's region of colour c that the region is most probably; the mean of the sources | many regions want to be the same one, and most of them are wrong |
 //! | past | 1 − n times the confidence of the source's regions of colour c, weighted by M; the least of the sources | a mistake goes on |
 //!
+//! A source that is [silent](mod@crate::carry) about a region, since the artist corrected it, does not count for that region.
+//!
 //! # Why these
 //!
 //! They were chosen from about fifty numbers, each time the one that lowered the loss most on films that were left out of the fit, until the next ones

@@ -87,7 +87,7 @@ mod strokes;
 mod thin;
 mod width;
 
-pub use carry::{Displaced, Key, between, bind, carry, carry_known, displaced, identify};
+pub use carry::{Bound, Displaced, Key, between, bind, carry, carry_known, displaced, identify};
 pub use drawing::Drawing;
 pub use stroke::{Options, Stroke, Style, Tracked};
 

@@ -3,7 +3,8 @@
 //! Work begins on the model drawing: the first frame on which at least half of the regions were clicked, or the one with the largest share of
 //! them where no frame has as many. From there the colours go from drawing to drawing, forwards and backwards. Each drawing is painted by the last
 //! one, by the model drawing, and by the next drawing with as many clicks. On a frame with fewer clicks, these overrule what was carried there, and
-//! what follows comes from them too: so a mistake is mended by one click, before and after the model drawing.
+//! about what they correct the artist's other drawings are silent from there on ([`carry()`]): so a mistake is mended by one click, before and after
+//! the model drawing, and nothing else changes.
 
 #[cfg(test)]
 mod tests;

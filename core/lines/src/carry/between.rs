@@ -7,7 +7,8 @@
 //!    first. Those that only the farther key has come next, and then those that neither key has: they began on the way.
 //!
 //! A stroke may be lost on the way to the second key. The stroke drawn there then has another number, until it meets the
-//! lost one on its way back. There it takes that number, on all drawings.
+//! lost one on its way back. There it takes that number, on all drawings
+//! that do not have it already.
 //!
 //! What began on the way gets its number forwards only, so a line that neither key has is one stroke on all drawings. It
 //! also goes on behind the second key. A stroke that the first key has and the second one lacks has ended there.

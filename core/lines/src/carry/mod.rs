@@ -25,7 +25,7 @@ mod rivals;
 mod samples;
 
 pub use between::{Key, between};
-pub use bind::bind;
+pub use bind::{Bound, bind};
 pub use identify::identify;
 pub use register::{Displaced, displaced};
 
