@@ -64,10 +64,22 @@ def _closed(part, context) -> None:
     live.setting_changed(part, context)
 
 
+def _named(part, _context) -> None:
+    # Documents and masks know parts by their names. Blender numbers objects of one name in the same way.
+    name = part.name.strip() or "Part"
+    taken = {other.name for other in part.id_data.rototoon.parts if other.as_pointer() != part.as_pointer()}
+    free = (name if k == 0 else f"{name}.{k:03}" for k in range(len(taken) + 1))
+    name = next(each for each in free if each not in taken)
+    if part.name != name:
+        part.name = name
+
+
 class RototoonPart(bpy.types.PropertyGroup):
     """A contour that is tracked. Its strokes carry its number."""
 
-    # `name` is a property of every PropertyGroup.
+    name: bpy.props.StringProperty(
+        name="Name", description="Name of the part in documents and files of shapes. No other part of the object has it", update=_named
+    )
     number: bpy.props.IntProperty(name="Number", description="Number that the part's strokes carry")
     depth: bpy.props.FloatProperty(
         name="Depth",

@@ -147,7 +147,7 @@ def told(run: Run, strokes: int, reset: bool = False) -> str:
         drawn = np.asarray(run.entry.session.tracks(part["name"]).frames).astype(int)
         frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
     text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
-    return text if run.worker.result.solved or not strokes or reset else "Nothing had changed: " + text
+    return text if run.worker.result.solved or not strokes or reset else "Nothing to track again: " + text
 
 
 def of_moved_lines(ob, run: Run) -> str:

@@ -62,7 +62,7 @@ _SHARED = {
     ),
     "folder": (
         bpy.props.StringProperty,
-        {"name": "Library", "description": "A library instead of the one in the panel", "subtype": "DIR_PATH"},
+        {"name": "Library", "description": "A library instead of the one in the panel", "subtype": "DIR_PATH", "options": {"PATH_SUPPORTS_BLEND_RELATIVE"}},
     ),
     "performer": (
         bpy.props.StringProperty,

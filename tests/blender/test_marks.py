@@ -361,7 +361,7 @@ def test_track_says_where_it_sets_looks_back(addon, fake, tmp_path):
     bpy.ops.rototoon.track()
     report = said(addon)
     assert report.warnings == ("tracked contours look like the keys again on 5 and 6: to change a part's look, change it on its keys",)
-    assert not report.text.startswith("Nothing had changed")
+    assert not report.text.startswith("Nothing to track again")
     assert content(addon, ob, name, 8).point["vertex_color"][-1].any()
     bpy.ops.rototoon.track()
     assert said(addon).warnings == (), "it is said once"

@@ -16,7 +16,7 @@ class FilePicker:
     """A file, and the frame of its first picture."""
 
     filepath: bpy.props.StringProperty(
-        name="File", description="Any picture of the sequence, or a movie", subtype="FILE_PATH", options={"SKIP_SAVE"}
+        name="File", description="Any picture of the sequence, or a movie", subtype="FILE_PATH", options={"SKIP_SAVE", "PATH_SUPPORTS_BLEND_RELATIVE"}
     )
     filter_glob: bpy.props.StringProperty(default=FILTER, options={"HIDDEN"})
     at_scene_start: bpy.props.BoolProperty(

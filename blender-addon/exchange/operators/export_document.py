@@ -23,7 +23,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     bl_options = {"REGISTER"}
     changes = guard.NOTHING
 
-    filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"})
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 

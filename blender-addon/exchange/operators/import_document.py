@@ -21,7 +21,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    filepath: bpy.props.StringProperty(name="File", description="The project document", subtype="FILE_PATH", options={"SKIP_SAVE", "PATH_SUPPORTS_BLEND_RELATIVE"})
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     into: bpy.props.EnumProperty(
         name="Into",

@@ -26,7 +26,7 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
     changes = guard.NOTHING
 
     directory: bpy.props.StringProperty(
-        name="Folder", description="The folder that gets the batch. The farm's machines must see it", subtype="DIR_PATH"
+        name="Folder", description="The folder that gets the batch. The farm's machines must see it", subtype="DIR_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"}
     )
     which: bpy.props.EnumProperty(
         name="Shots",
@@ -41,6 +41,7 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
         name="Files",
         description="The folder of the Blender files, for Files of a Folder. If empty, the folder of this file",
         subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     use_snap: bpy.props.BoolProperty(name="Snap to Ink", description="Also lay the tracked contours along the drawn lines", default=False)
     use_mattes: bpy.props.BoolProperty(

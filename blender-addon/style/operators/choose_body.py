@@ -28,7 +28,7 @@ class ROTOTOON_OT_choose_body(Guarded, OnDrawing, bpy.types.Operator):
 
     body: bpy.props.EnumProperty(name="Body", description="The body of the object's limbs", items=ITEMS)
     filepath: bpy.props.StringProperty(
-        name="File", description="A JSON file with the body, for From File", subtype="FILE_PATH", options={"SKIP_SAVE"}
+        name="File", description="A JSON file with the body, for From File", subtype="FILE_PATH", options={"SKIP_SAVE", "PATH_SUPPORTS_BLEND_RELATIVE"}
     )
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
 

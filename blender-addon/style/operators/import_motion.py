@@ -28,9 +28,9 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
     bl_description = "Add motion capture files (BVH), seen from one side, to the library as skeleton clips"
     bl_options = {"REGISTER"}
 
-    filepath: bpy.props.StringProperty(name="File", description="A BVH file", subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(name="File", description="A BVH file", subtype="FILE_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"})
     directory: bpy.props.StringProperty(
-        name="Folder", description="Folder of several files", subtype="DIR_PATH", options={"HIDDEN"}
+        name="Folder", description="Folder of several files", subtype="DIR_PATH", options={"HIDDEN", "PATH_SUPPORTS_BLEND_RELATIVE"}
     )
     files: bpy.props.CollectionProperty(
         name="Files",
