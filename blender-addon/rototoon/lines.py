@@ -37,7 +37,9 @@ class Stroke:
     confidence: float
     """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt: it was drawn, or begins here."""
     fill: bool
-    """Whether what is inside is filled with the colour, such as a solid black. Without widths there is no line around it."""
+    """Whether what is inside is filled, such as a solid black. Without widths there is no line around it."""
+    fill_colour: tuple[float, float, float] | None = None
+    """sRGB from 0 to 1 of what is inside; `None` if it has the stroke's own colour."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,9 @@ class Traced:
     confidence: memoryview
     """float64 (S,): for each stroke the probability that it is the stroke of its number; 1 if that is beyond doubt."""
     fills: memoryview
-    """int32 (S,): not 0 if what is inside is filled with the stroke's colour."""
+    """int32 (S,): not 0 if what is inside is filled."""
+    fill_colours: memoryview
+    """float64 (S, 3): sRGB from 0 to 1 of what is inside, NaN if it has the stroke's own colour."""
 
     def on(self, frame: int) -> list[Stroke]:
         """The strokes of a frame, from back to front. There are none on a frame that was not traced."""
@@ -104,10 +108,14 @@ class Traced:
 
     def _stroke(self, i: int) -> Stroke:
         first, last = self.point_offsets[i], self.point_offsets[i + 1]
-        red, green, blue = (self.colours[i, channel] for channel in range(3))
         # A memoryview of two dimensions cannot be cut; its bytes can.
         flat = self.points.cast("B")[16 * first : 16 * last]
         points = flat.cast("d", (last - first, 2)) if last > first else flat.cast("d")
-        colour = None if red != red else (red, green, blue)
         closed, fill = bool(self.closed[i]), bool(self.fills[i])
-        return Stroke(self.tracks[i], points, closed, self.widths[first:last], colour, self.confidence[i], fill)
+        colour, inside = _colour(self.colours, i), _colour(self.fill_colours, i)
+        return Stroke(self.tracks[i], points, closed, self.widths[first:last], colour, self.confidence[i], fill, inside)
+
+
+def _colour(colours: memoryview, i: int) -> tuple[float, float, float] | None:
+    red, green, blue = (colours[i, channel] for channel in range(3))
+    return None if red != red else (red, green, blue)

@@ -82,6 +82,7 @@ class Tracer:
             np.full(int(sizes.sum()), 2.0),
             np.ones(len(flat)),
             np.zeros(len(flat), int),
+            np.full((len(flat), 3), np.nan),
         )
 
     def close(self):

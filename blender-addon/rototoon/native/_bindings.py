@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xd57fa0645109a071
+HEADER_HASH = 0xaa9a658f303424a3
 
 ROTOTOON_ABI_VERSION = 1
 PAIR = 0
@@ -654,6 +654,13 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_traced_fill_colours.restype = ctypes.c_int32
+    library.rototoon_traced_fill_colours.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

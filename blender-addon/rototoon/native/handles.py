@@ -248,7 +248,13 @@ class TracedArrays(Handle):
             view(widths, "d", ends[strokes]),
             view(confidence, "d", strokes),
             view(fills, "i", strokes),
+            self._fill_colours(),
         )
+
+    def _fill_colours(self) -> memoryview:
+        count, colours = ctypes.c_size_t(), ctypes.c_void_p()
+        call("rototoon_traced_fill_colours", self.pointer(), ctypes.byref(count), ctypes.byref(colours))
+        return view(colours, "d", count.value, 3)
 
 
 class FilledArrays(Handle):

@@ -780,8 +780,8 @@ RototoonStatus rototoon_session_traced(const struct RototoonSession *session,
 // - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 // - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 //   `rototoon_outcomes` tells which values are sure, doubtful and lost.
-// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
-//   strokes are filled. A fill without widths has no line around it.
+// - `fills`: for each stroke 1 if what is inside is filled, such as a solid black, otherwise 0. Only closed strokes are filled. A fill
+//   without widths has no line around it. [`rototoon_traced_fill_colours`] gives the colours of fills.
 RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     size_t *frame_count,
                                     const int32_t **frames,
@@ -795,6 +795,13 @@ RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     const double **confidence,
                                     const int32_t **fills,
                                     struct RototoonText **error);
+
+// Reads the colours of the fills of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the order of
+// `rototoon_traced_read`, and lives as long as the handle. They are NaN where a fill has the colour of its stroke.
+RototoonStatus rototoon_traced_fill_colours(const struct RototoonTraced *traced,
+                                            size_t *stroke_count,
+                                            const double **fill_colours,
+                                            struct RototoonText **error);
 
 // Frees traced strokes. Null is allowed.
 void rototoon_traced_free(struct RototoonTraced *traced);

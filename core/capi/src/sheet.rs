@@ -68,17 +68,17 @@ pub struct RototoonInBetweens {
 /// The kinds of rows of [`RototoonMatches`].
 pub mod kind {
     /// The two strokes correspond to each other.
-    pub const PAIR: i32 = 0;
+    pub const ROTOTOON_PAIR: i32 = 0;
     /// The later stroke is a piece of the earlier one.
-    pub const SPLIT: i32 = 1;
+    pub const ROTOTOON_SPLIT: i32 = 1;
     /// The earlier stroke is a piece of the later one.
-    pub const JOINED: i32 = 2;
+    pub const ROTOTOON_JOINED: i32 = 2;
     /// The earlier stroke has no counterpart.
-    pub const VANISHED: i32 = 3;
+    pub const ROTOTOON_VANISHED: i32 = 3;
     /// The later stroke has no counterpart.
-    pub const APPEARED: i32 = 4;
+    pub const ROTOTOON_APPEARED: i32 = 4;
     /// The two strokes are pieces of one line and share a stretch of it.
-    pub const CHAINED: i32 = 5;
+    pub const ROTOTOON_CHAINED: i32 = 5;
 }
 
 const REVERSED: i32 = 1;
@@ -266,25 +266,26 @@ impl RototoonMatches {
         };
         for pair in &matching.pairs {
             let flags = REVERSED * i32::from(pair.reversed) + BY_HAND * i32::from(pair.by_hand);
-            row(kind::PAIR, Some(pair.from), Some(pair.to), flags, [pair.start, pair.confidence]);
+            row(kind::ROTOTOON_PAIR, Some(pair.from), Some(pair.to), flags, [pair.start, pair.confidence]);
         }
         let mut pieces = |kind: i32, list: &[InPieces]| {
             for found in list {
                 for &(piece, reversed) in &found.pieces {
-                    let (from, to) = if kind == kind::SPLIT { (found.whole, piece) } else { (piece, found.whole) };
+                    let (from, to) =
+                        if kind == kind::ROTOTOON_SPLIT { (found.whole, piece) } else { (piece, found.whole) };
                     row(kind, Some(from), Some(to), REVERSED * i32::from(reversed), [0.0, 1.0]);
                 }
             }
         };
-        pieces(kind::SPLIT, &matching.split);
-        pieces(kind::JOINED, &matching.joined);
+        pieces(kind::ROTOTOON_SPLIT, &matching.split);
+        pieces(kind::ROTOTOON_JOINED, &matching.joined);
         for line in &matching.chained {
             for &(from, to) in &line.meetings {
-                row(kind::CHAINED, Some(from), Some(to), 0, [0.0, line.confidence]);
+                row(kind::ROTOTOON_CHAINED, Some(from), Some(to), 0, [0.0, line.confidence]);
             }
         }
-        matching.vanished.iter().for_each(|&i| row(kind::VANISHED, Some(i), None, 0, [0.0, 1.0]));
-        matching.appeared.iter().for_each(|&j| row(kind::APPEARED, None, Some(j), 0, [0.0, 1.0]));
+        matching.vanished.iter().for_each(|&i| row(kind::ROTOTOON_VANISHED, Some(i), None, 0, [0.0, 1.0]));
+        matching.appeared.iter().for_each(|&j| row(kind::ROTOTOON_APPEARED, None, Some(j), 0, [0.0, 1.0]));
     }
 }
 

@@ -32,6 +32,8 @@ pub struct RototoonTraced {
     pub confidence: Vec<f64>,
     /// For each stroke 1 if what is inside is filled, otherwise 0.
     pub fills: Vec<i32>,
+    /// Three numbers for each stroke, sRGB from 0 to 1; NaN where a fill has the stroke's own colour.
+    pub fill_colours: Vec<f64>,
 }
 
 impl RototoonTraced {
@@ -52,6 +54,7 @@ impl RototoonTraced {
             widths: Vec::new(),
             confidence: Vec::new(),
             fills: Vec::new(),
+            fill_colours: Vec::new(),
         };
         for drawing in drawings {
             arrays.push(drawing)?;
@@ -70,7 +73,8 @@ impl RototoonTraced {
             self.closed.push(stroke.closed.into());
             self.fills.push(stroke.fill.into());
             self.confidence.push(stroke.confidence.unwrap_or(1.0));
-            self.colours.extend(stroke.colour.map_or([f64::NAN; 3], |colour| colour.map(f64::from)));
+            self.colours.extend(numbers(stroke.colour));
+            self.fill_colours.extend(numbers(stroke.fill_colour));
             self.points.extend(stroke.points.iter().flat_map(|p| p.to_array()));
             match stroke.widths.is_empty() {
                 true => self.widths.extend(std::iter::repeat_n(f64::NAN, stroke.points.len())),
@@ -82,6 +86,11 @@ impl RototoonTraced {
         self.stroke_offsets.push(counted(self.tracks.len(), "strokes up to here,")?);
         Ok(())
     }
+}
+
+/// The three numbers of a colour; NaN if there is none.
+fn numbers(colour: Option<[f32; 3]>) -> [f64; 3] {
+    colour.map_or([f64::NAN; 3], |colour| colour.map(f64::from))
 }
 
 /// Refuses an option that is outside of its range, or no number.
@@ -162,8 +171,14 @@ mod tests {
             confidence: Some(0.75),
             ..TracedStroke::default()
         };
-        let ring =
-            TracedStroke { track: 1, points: vec![Point::ONE; 3], closed: true, fill: true, ..TracedStroke::default() };
+        let ring = TracedStroke {
+            track: 1,
+            points: vec![Point::ONE; 3],
+            closed: true,
+            fill: true,
+            fill_colour: Some([0.25, 1.0, 0.0]),
+            ..TracedStroke::default()
+        };
         let drawings =
             [TracedDrawing { frame: -1, strokes: Vec::new() }, TracedDrawing { frame: 7, strokes: vec![line, ring] }];
         let found = RototoonTraced::of(&drawings).unwrap();
@@ -173,6 +188,8 @@ mod tests {
         assert_eq!((&found.point_offsets[..], found.points.len()), (&[0, 2, 5][..], 10));
         assert_eq!((&found.widths[..2], &found.colours[..3]), (&[2.0, 2.5][..], &[0.0, 0.5, 1.0][..]));
         assert!(found.widths[2..].iter().chain(&found.colours[3..]).all(|value| value.is_nan()));
+        assert_eq!((found.fill_colours.len(), &found.fill_colours[3..]), (6, &[0.25, 1.0, 0.0][..]));
+        assert!(found.fill_colours[..3].iter().all(|value| value.is_nan()));
     }
 
     #[test]

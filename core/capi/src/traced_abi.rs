@@ -76,8 +76,8 @@ pub unsafe extern "C" fn rototoon_session_traced(
 /// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 /// - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 ///   `rototoon_outcomes` tells which values are sure, doubtful and lost.
-/// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
-///   strokes are filled. A fill without widths has no line around it.
+/// - `fills`: for each stroke 1 if what is inside is filled, such as a solid black, otherwise 0. Only closed strokes are filled. A fill
+///   without widths has no line around it. [`rototoon_traced_fill_colours`] gives the colours of fills.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_traced_read(
     traced: *const RototoonTraced,
@@ -125,6 +125,28 @@ pub unsafe extern "C" fn rototoon_traced_read(
             widths.write(traced.widths.as_ptr());
             confidence.write(traced.confidence.as_ptr());
             fills.write(traced.fills.as_ptr());
+            Ok(())
+        })
+    }
+}
+
+/// Reads the colours of the fills of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the order of
+/// `rototoon_traced_read`, and lives as long as the handle. They are NaN where a fill has the colour of its stroke.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_traced_fill_colours(
+    traced: *const RototoonTraced,
+    stroke_count: *mut usize,
+    fill_colours: *mut *const f64,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract; out parameters are written only after `clear` accepted them.
+    unsafe {
+        entry(error, || {
+            clear(stroke_count, 0, "stroke_count")?;
+            clear(fill_colours, null(), "fill_colours")?;
+            let traced = handle(traced, "traced")?;
+            stroke_count.write(traced.tracks.len());
+            fill_colours.write(traced.fill_colours.as_ptr());
             Ok(())
         })
     }
