@@ -109,7 +109,7 @@ COMMANDS = [
     Command(["snap", "tracked.json", "-o", "out.json"], ["out.json"]),
     Command(["render", "tracked.json", "-o", "r_%d.png", "--what", "overlay"], [f"r_{k}.png" for k in range(FRAMES)]),
     Command(["render", "tracked.json", "-o", "r_%d.exr", "--what", "ids"], [f"r_{k}.exr" for k in range(FRAMES)]),
-    *[Command(["export", "tracked.json", "-o", f"out.{kind}"], [f"out.{kind}"]) for kind in ("svg", "nk", "py", "jsx", "fxs")],
+    *[Command(["export", "tracked.json", "-o", f"out.{kind}"], [f"out.{kind}"]) for kind in ("svg", "nk", "py", "jsx", "fxs", "setting")],
     Command(["import", "in.json", "shapes.svg", "-o", "out.json"], ["out.json"]),
     Command(["fit", "curves.json", "--tolerance", "1", "-o", "out.json"], ["out.json"]),
     Command(["tween", "drawn.json", "-o", "out.json"], ["out.json"]),

@@ -64,7 +64,7 @@ def commands_of_set(folder: Path, out: Path) -> Iterator[list[str]]:
     for what in ("overlay", "matte", "cutout"):
         yield ["render", snapped, "-o", str(out / f"{what}_%03d.png"), "--what", what]
     yield ["render", snapped, "-o", str(out / "ids_%03d.exr"), "--what", "ids"]
-    for ending in ("svg", "nk", "py", "jsx", "fxs", "json"):
+    for ending in ("svg", "nk", "py", "jsx", "fxs", "setting", "json"):
         yield ["export", snapped, "-o", str(out / f"export.{ending}")]
     curves, drawings = out / "curves.json", out / "drawings.json"
     curves.write_text(json.dumps(keyed_curves(project)))

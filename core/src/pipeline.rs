@@ -15,6 +15,7 @@ mod fill;
 mod gaps;
 mod holds;
 pub mod memory;
+mod outdated;
 mod paint;
 mod picture;
 mod render;
@@ -39,6 +40,7 @@ pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
 pub use gaps::without_file;
+pub use outdated::outdated;
 pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use render::render;
@@ -244,6 +246,11 @@ pub fn export_silhouette(document: &Document, spacing: f64) -> String {
     export::silhouette(&document.scene, spacing)
 }
 
+/// Exports the document as Polygon masks for Fusion. Points of snapped paths are about `spacing` pixels apart.
+pub fn export_fusion(document: &Document, spacing: f64) -> String {
+    export::fusion(&document.scene, spacing)
+}
+
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
 /// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
 /// such a feather, and some lack characters of names. In SVG a stroke has one width along it. `extension`, in small letters, names the form.
@@ -342,11 +349,23 @@ fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names
 /// the same files. The new pattern is relative if a relative path exists, otherwise absolute.
 pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
-    let pattern = &mut document.scene.footage.pattern;
-    // On Windows a path without a drive may still begin at a root.
-    if Path::new(pattern).is_relative() && !Path::new(pattern).has_root() {
+    if let Some(pattern) = relative_pattern(document) {
         *pattern = output::moved_pattern(pattern, from, to);
     }
+}
+
+/// Makes the footage pattern of a document absolute that was in `folder` and goes where it has no folder: into a pipe.
+pub fn unfold(document: &mut Document, folder: &Path) {
+    if let Some(pattern) = relative_pattern(document) {
+        *pattern = output::absolute_pattern(pattern, folder);
+    }
+}
+
+fn relative_pattern(document: &mut Document) -> Option<&mut String> {
+    let pattern = &mut document.scene.footage.pattern;
+    // On Windows a path without a drive may still begin at a root.
+    let is_relative = Path::new(pattern).is_relative() && !Path::new(pattern).has_root();
+    is_relative.then_some(pattern)
 }
 
 #[cfg(test)]

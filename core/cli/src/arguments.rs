@@ -1,7 +1,7 @@
 //! Command-line options made from the core's list of parameters, and functions that read their values.
 
 use crate::failure::Failure;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use rototoon::project::schema::MAX_FRAME_NUMBER;
 use rototoon::scene::FrameNumber;
@@ -26,7 +26,12 @@ pub fn output(name: &'static str, help: &'static str) -> Arg {
         .value_name(name)
         .help(help)
         .required(true)
-        .value_parser(value_parser!(PathBuf))
+        .value_parser(PathBufValueParser::new().try_map(named))
+}
+
+/// A path to write. Files appear whole or not at all, so nothing is written to standard output.
+fn named(path: PathBuf) -> Result<PathBuf, &'static str> {
+    if path == Path::new("-") { Err("expected a file; for a file of this name write ./-") } else { Ok(path) }
 }
 
 /// One option for each parameter of a stage.

@@ -157,7 +157,7 @@ fn work(
     let threads = if asked("threads") == 0 { (cores / jobs).max(1) } else { asked("threads") };
     let memory = given.get_one::<u64>("memory").map_or_else(Budget::of_machine, |bytes| Budget::new(*bytes));
     let all = shots.len();
-    line("note", &format!("{all} shots, {jobs} at a time, {} of memory", Bytes(memory.bytes())));
+    line("note", &format!("{all} shots, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));
     let program =
         std::env::current_exe().map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
     let options = Options {

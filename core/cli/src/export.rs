@@ -12,11 +12,11 @@ use rototoon::scene::parameters::Stage;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("export")
-        .about("Writes the result as animated SVG, as shapes for Nuke, Natron, After Effects or Silhouette, or as a document")
+        .about("Writes the result as animated SVG, as shapes for Nuke, Natron, After Effects, Silhouette or Fusion, or as a document")
         .arg(arguments::project())
         .arg(arguments::output(
             "FILE",
-            "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette) or FILE.json",
+            "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette), FILE.setting (Fusion) or FILE.json",
         ))
         .args(arguments::of_stage(Stage::Export))
         .arg(arguments::frames())
@@ -30,9 +30,9 @@ pub fn command() -> Command {
 fn extension(given: &ArgMatches) -> Result<String, Failure> {
     let to = arguments::path(given, "output");
     let extension = to.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
-    if !["svg", "nk", "ntp", "py", "jsx", "fxs", "json"].contains(&extension.as_str()) {
+    if !["svg", "nk", "ntp", "py", "jsx", "fxs", "setting", "json"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!(
-            "{}: expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs or .json",
+            "{}: expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs, .setting or .json",
             to.display()
         )));
     }
@@ -93,6 +93,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         "py" => pipeline::export_natron(&document, spacing),
         "jsx" => pipeline::export_after_effects(&document, spacing),
         "fxs" => pipeline::export_silhouette(&document, spacing),
+        "setting" => pipeline::export_fusion(&document, spacing),
         // Regions and strokes belong to no part.
         _ if asked.parts.is_some() => svg(&document.scene, &SvgOptions { motion, spacing }),
         _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })
@@ -100,7 +101,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     };
     write_whole(to, text.as_bytes())?;
     let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
-    let warnings = [pipeline::left_out_of_shapes(&document, &extension), pipeline::untracked(&document.scene), large];
+    let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
+    let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
     warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
     Ok(())
 }

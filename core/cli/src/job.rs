@@ -3,11 +3,11 @@
 use crate::batch;
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::project::output::moved_pattern;
 use rototoon::project::{Document, Inputs, write_whole};
-use rototoon_batch::jobs::{flamenco, opencue, openjd};
+use rototoon_batch::jobs::{OnFailure, flamenco, opencue, openjd};
 use rototoon_batch::manifest::Manifest;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -51,6 +51,18 @@ pub fn command() -> Command {
                 .default_value("4")
                 .value_parser(value_parser!(u16).range(1..)),
         )
+        .arg(
+            Arg::new("failed-shots")
+                .long("failed-shots")
+                .value_name("WAY")
+                .help("What a worker tells the farm when a shot fails")
+                .default_value("go-on")
+                .value_parser(PossibleValuesParser::new([
+                    PossibleValue::new("go-on").help("Status 0: the others and the page are made all the same"),
+                    PossibleValue::new("fail")
+                        .help("Status 1: the farm may try the shots again, and holds the page back"),
+                ])),
+        )
 }
 
 /// Runs the subcommand.
@@ -63,16 +75,19 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let name = path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let (count, chunk) = (manifest.shots.len(), given.get_one::<u16>("chunk").map_or(1, |chunk| usize::from(*chunk)));
+    let strict = arguments::choice(given, "failed-shots") == "fail";
+    let failure = if strict { OnFailure::Fail } else { OnFailure::GoOn };
     let text = match arguments::choice(given, "for") {
         "flamenco" => {
             line("note", &format!("the manifest has {count} shots: give this number with the job"));
-            flamenco::job_type()
+            flamenco::job_type(failure)
         }
-        "opencue" => opencue::outline(&name, count, chunk),
+        "opencue" => opencue::outline(&name, count, chunk, failure),
         _ => {
             let results = arguments::path(given, "results");
             let (place, results) = (from_template(path, to), from_template(results, to));
-            format!("{:#}\n", openjd::template(&name, count, chunk, place.as_deref(), results.as_deref()))
+            let (place, results) = (place.as_deref(), results.as_deref());
+            format!("{:#}\n", openjd::template(&name, (count, chunk), failure, place, results))
         }
     };
     Ok(write_whole(to, text.as_bytes())?)

@@ -26,6 +26,7 @@ mod progress;
 mod project;
 mod render;
 mod sheet;
+mod signals;
 mod snap;
 mod steps;
 mod style;

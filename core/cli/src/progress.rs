@@ -2,10 +2,11 @@
 //!
 //! Ctrl-C cancels the work in an orderly way, so that no file is half-written. Where a step takes longer than [`GRACE`] to
 //! notice, the process ends without it. Files are still complete or absent, because each is renamed when it is complete,
-//! and temporary files are removed. A second Ctrl-C ends the process at once. SIGTERM and SIGHUP do the same as Ctrl-C.
+//! and temporary files are removed. A second Ctrl-C ends the process at once. SIGTERM and SIGHUP do the same as Ctrl-C ([`crate::signals`]).
 //! Commands without long work are ended in the same way.
 
 use crate::failure::{Failure, line};
+use crate::signals;
 use indicatif::{ProgressBar, ProgressStyle};
 use rototoon::project::unfinished;
 use rototoon::scene::{Cancelled, Progress};
@@ -56,7 +57,7 @@ pub fn catch_signals() -> Result<(), Failure> {
             end();
         });
     };
-    ctrlc::set_handler(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
+    signals::catch(interrupt).map_err(|error| Failure::Other(format!("cannot catch Ctrl-C: {error}")))
 }
 
 /// Ends the process. The work goes on until then, so its temporary files are removed here.

@@ -51,6 +51,10 @@ pub fn inputs(document: &Document, from: &Path) -> Inputs {
 /// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files.
 pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failure> {
     let home = home(&document, from);
-    pipeline::relocate(&mut document, &home, &folder_for(to, &home));
+    match std::fs::metadata(to) {
+        // A pipe or a device: nobody knows the folder of what reads it.
+        Ok(found) if !found.is_file() => pipeline::unfold(&mut document, &home),
+        _ => pipeline::relocate(&mut document, &home, &folder_for(to, &home)),
+    }
     Ok(document.save(to)?)
 }

@@ -96,7 +96,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::render(&document, &home, &job, bar).map_err(|error| Failure::of(error, from))
     })?;
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
-    lacking.iter().for_each(|warning| line("warning", &format!("{output}: {warning}")));
+    let outdated = pipeline::outdated(&document.scene);
+    lacking.iter().chain(&outdated).for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! `rototoon sheet`: draws a contact sheet of the result.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline;
@@ -35,5 +35,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::sheet(&document, &home, bar).map_err(|error| Failure::of(error, from))
     })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
-    Ok(write_whole(to, &bytes)?)
+    write_whole(to, &bytes)?;
+    if let Some(warning) = pipeline::outdated(&document.scene) {
+        line("warning", &format!("{}: {warning}", from.display()));
+    }
+    Ok(())
 }

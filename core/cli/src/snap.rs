@@ -1,6 +1,6 @@
 //! `rototoon snap`: snaps contours to the drawn ink.
 
-use crate::failure::Failure;
+use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline;
@@ -30,6 +30,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::snap(&mut document, &home, &options, bar)?;
         Ok(document)
     })?;
+    if let Some(warning) = pipeline::outdated(&document.scene) {
+        line("warning", &format!("{}: {warning}", from.display()));
+    }
     project::save(document, from, to)
 }
 

@@ -187,6 +187,14 @@ pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
     format!("{}/{pattern}", way.trim_end_matches('/'))
 }
 
+/// A frame pattern relative to a folder as an absolute one, with forward slashes.
+pub fn absolute_pattern(pattern: &str, folder: &Path) -> String {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let folder = real(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned());
+    // A percent sign in a folder's name must not become a place for the frame number.
+    format!("{}/{}", slashed(&folder).replace('%', "%%").trim_end_matches('/'), slashed(Path::new(pattern)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -293,6 +301,8 @@ mod tests {
         assert_eq!(moved_pattern("f_%d.png", &a, &a.join("../100% a")), "f_%d.png");
         assert_eq!(moved_pattern("f/f_%d.png", &a, &b), "../../100%% a/f/f_%d.png");
         assert_eq!(moved_pattern("f_%d.png", &b, root.path()), "b/c/f_%d.png");
+        let absolute = absolute_pattern("f/f_%d.png", &a);
+        assert!(Path::new(&absolute).is_absolute() && absolute.ends_with("/100%% a/f/f_%d.png"), "{absolute}");
     }
 
     #[test]

@@ -23,6 +23,15 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     problems.append(drawing_problems(document));
+    for part in &document.scene.parts {
+        for frame in part.outdated() {
+            let place = format!("part {:?} keys.\"{frame}\"", part.name);
+            problems.warning(
+                place,
+                "the key was changed after tracking, and the old contour is used: run `rototoon track`",
+            );
+        }
+    }
     shape(&document.scene.footage, &mut problems);
     let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
     let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();

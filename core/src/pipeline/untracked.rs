@@ -15,13 +15,17 @@ fn is_untracked(part: &Part) -> bool {
 
 /// The parts that are drawn on some of their frames only, as a message for the user. `None` if all are tracked.
 pub fn untracked(scene: &Scene) -> Option<String> {
-    let names: Vec<String> =
-        scene.parts.iter().filter(|part| is_untracked(part)).map(|part| format!("{:?}", part.name)).collect();
+    let listed = named(scene.parts.iter().filter(|part| is_untracked(part)))?;
+    Some(format!("not tracked on all frames between its keys: {listed}; run `rototoon track` first"))
+}
+
+/// The names of parts, as many as a message can take. `None` if there are no parts.
+pub(super) fn named<'a>(parts: impl Iterator<Item = &'a Part>) -> Option<String> {
+    let names: Vec<String> = parts.map(|part| format!("{:?}", part.name)).collect();
     let more = names.len().saturating_sub(NAMED);
     let listed = names[..names.len() - more].join(", ");
     let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    (!names.is_empty())
-        .then(|| format!("not tracked on all frames between its keys: {listed}{more}; run `rototoon track` first"))
+    (!names.is_empty()).then(|| format!("{listed}{more}"))
 }
 
 #[cfg(test)]

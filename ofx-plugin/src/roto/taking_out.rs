@@ -102,12 +102,13 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
         "py" => pipeline::export_natron(&document, SPACING),
         "jsx" => pipeline::export_after_effects(&document, SPACING),
         "fxs" => pipeline::export_silhouette(&document, SPACING),
+        "setting" => pipeline::export_fusion(&document, SPACING),
         "svg" => pipeline::export_svg(&document, &SvgOptions { spacing: SPACING, ..SvgOptions::default() })
             .map_err(|error| Failure::Told(error.to_string()))?,
         _ => {
             let shown = path.display();
             return Err(Failure::Told(format!(
-                "export file: found {shown}, expected a name that ends in .nk, .ntp, .py, .jsx, .fxs, .svg or .exr"
+                "export file: found {shown}, expected a name that ends in .nk, .ntp, .py, .jsx, .fxs, .setting, .svg or .exr"
             )));
         }
     };

@@ -288,6 +288,7 @@ fn shapes_become_files_of_other_programs() {
         ("a.py", "createBezier"),
         ("a.jsx", "ADBE Mask"),
         ("a.fxs", "<Silhouette"),
+        ("a.setting", "= PolylineMask {"),
         ("b.SVG", "<svg"),
     ] {
         let file = folder.path().join(name);
@@ -299,7 +300,7 @@ fn shapes_become_files_of_other_programs() {
     let _ = (host.log(), host.messages());
     effect.set_text("exportFile", folder.path().join("a.txt").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
-    assert!(host.messages().last().unwrap().contains(".nk, .ntp, .py, .jsx, .fxs, .svg or .exr"));
+    assert!(host.messages().last().unwrap().contains(".nk, .ntp, .py, .jsx, .fxs, .setting, .svg or .exr"));
 }
 
 #[test]

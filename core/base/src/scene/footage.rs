@@ -4,7 +4,7 @@
 //! negative.
 
 use super::raster::{Colour, Raster};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The number of a frame, as the artist's time line shows it.
@@ -41,11 +41,23 @@ pub trait FrameSource: Sync {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError>;
 }
 
+/// What may be wrong with the path of a file that does not exist: it may come from another system, or from a shell.
+fn hint(path: &Path) -> &'static str {
+    let text = path.to_string_lossy();
+    if !cfg!(windows) && text.contains('\\') {
+        "; the path looks like one of Windows: write / for \\, and a folder of this system or one relative to the document"
+    } else if text.split('/').any(|name| name.starts_with('$') || name == "~") {
+        "; ~ and variables such as $SHOW are not replaced in documents"
+    } else {
+        ""
+    }
+}
+
 /// Why the picture of a frame is not available.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FrameError {
     /// The file does not exist.
-    #[error("frame {frame}: no file {path:?}")]
+    #[error("frame {frame}: no file {path:?}{}", hint(path))]
     Missing {
         /// The requested frame.
         frame: FrameNumber,

@@ -129,6 +129,19 @@ impl Part {
         tracked.or_else(|| self.keys.get(&frame))
     }
 
+    /// Frames on which the key is another contour than the tracked one: it was changed after tracking, so the track is out of date.
+    pub fn outdated(&self) -> impl Iterator<Item = FrameNumber> + '_ {
+        /// Documents are written with rounded numbers, and some programs have 32 bits for a coordinate.
+        const SAME: f64 = 0.01;
+        let differs = |key: &[Point], tracked: &[Point]| {
+            key.len() != tracked.len() || key.iter().zip(tracked).any(|(a, b)| a.distance(*b) > SAME)
+        };
+        self.keys.iter().filter_map(move |(&frame, key)| {
+            let tracked = self.tracks.get(&frame).filter(|_| !self.is_absent(frame))?;
+            differs(key, tracked).then_some(frame)
+        })
+    }
+
     /// The contour on a frame as a polyline: the joined snapped paths if they are complete, otherwise the control
     /// points. The last point of a closed part does not repeat the first.
     pub fn outline(&self, frame: FrameNumber) -> Option<Vec<Point>> {

@@ -22,14 +22,25 @@ pub struct Places<'a> {
     pub output: &'a str,
 }
 
+/// What a call for shots says of a shot that failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OnFailure {
+    /// Its status is 0. A shot that fails would commonly fail again, and the page then shows all that was done.
+    GoOn,
+    /// Its status is 1, so that the engine tries the chunk again, and makes no page before all is done.
+    Fail,
+}
+
 /// The words of the call for some shots (`--shots A-B`), or for the page if `shots` is `None`.
 ///
-/// A shot that fails would fail again, so it is no reason for an engine to repeat a task: the status of the calls for
-/// shots is 0. The call for the page has the status of the whole batch.
-pub fn words(places: Places, shots: Option<&str>) -> Vec<String> {
+/// The call for the page has the status of the whole batch.
+pub fn words(places: Places, shots: Option<&str>, failure: OnFailure) -> Vec<String> {
     let mut words: Vec<&str> = vec!["batch", places.manifest, "-o", places.output];
     match shots {
-        Some(shots) => words.extend(["--shots", shots, "--fine", "all"]),
+        Some(shots) => {
+            let fine = if failure == OnFailure::GoOn { "all" } else { "keys" };
+            words.extend(["--shots", shots, "--fine", fine]);
+        }
         None => words.extend(["--summary", "--fine", "keys"]),
     }
     words.into_iter().map(str::to_owned).collect()

@@ -2,19 +2,19 @@
 //!
 //! An outline's layer is a list of commands, one for each chunk of shots. The layer `page` waits for all of them.
 
-use super::{Places, words};
+use super::{OnFailure, Places, words};
 use serde_json::json;
 
 /// The text of the script for a number of shots. `chunk` is the number of shots that a command gets.
-pub fn outline(name: &str, shots: usize, chunk: usize) -> String {
+pub fn outline(name: &str, shots: usize, chunk: usize, failure: OnFailure) -> String {
     // These names are replaced by expressions of the script.
     let places = Places { manifest: "$manifest", output: "$output" };
     SCRIPT
         .replace("$NAME", &json!(job_name(name)).to_string())
         .replace("$COUNT", &shots.to_string())
         .replace("$CHUNK", &chunk.max(1).to_string())
-        .replace("$SHOTS", &list(&words(places, Some("$shots"))))
-        .replace("$PAGE", &list(&words(places, None)))
+        .replace("$SHOTS", &list(&words(places, Some("$shots"), failure)))
+        .replace("$PAGE", &list(&words(places, None, failure)))
 }
 
 /// Letters, digits, `_` and `-`: OpenCue makes folders of it.
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn the_calls_are_those_of_the_other_engines() {
-        let script = outline("night \"7\"", 20, 6);
+        let script = outline("night \"7\"", 20, 6, OnFailure::GoOn);
         for line in [
             "NAME = \"rototoon_night__7_\"\nSHOTS, CHUNK = 20, 6\n",
             r#"[settings.program, "batch", settings.manifest, "-o", settings.output, "--shots", f"{first}-{min(first + CHUNK - 1, SHOTS)}", "--fine", "all"]"#,
@@ -94,5 +94,7 @@ mod tests {
             assert!(script.contains(line), "{line}\n{script}");
         }
         assert!(!script.contains('$'));
+        let strict = outline("night", 20, 6, OnFailure::Fail);
+        assert_eq!(strict.matches(r#""--fine", "keys"]"#).count(), 2, "{strict}");
     }
 }

@@ -3,7 +3,7 @@
 //! The engine divides the places of the shots into chunks and starts the program for each. The step `Page` waits for all
 //! of them.
 
-use super::{Places, words};
+use super::{OnFailure, Places, words};
 use serde_json::{Value, json};
 
 /// Greatest number of letters of a job's name.
@@ -12,9 +12,16 @@ const LONGEST_NAME: usize = 128;
 /// The template for a number of shots. `chunk` is the number of shots that the program gets at a time. `manifest` and
 /// `output` are the defaults of the parameters, relative to the template's folder: the specification allows no others. A
 /// parameter without a default is asked for when the job is sent.
-pub fn template(name: &str, shots: usize, chunk: usize, manifest: Option<&str>, output: Option<&str>) -> Value {
+pub fn template(
+    name: &str,
+    (shots, chunk): (usize, usize),
+    failure: OnFailure,
+    manifest: Option<&str>,
+    output: Option<&str>,
+) -> Value {
     let places = Places { manifest: "{{Param.Manifest}}", output: "{{Param.Output}}" };
-    let run = |shots: Option<&str>| json!({"onRun": {"command": "{{Param.Program}}", "args": words(places, shots)}});
+    let run =
+        |shots: Option<&str>| json!({"onRun": {"command": "{{Param.Program}}", "args": words(places, shots, failure)}});
     let path = |name: &str, kind: &str, flow: &str, default: Option<&str>, description: &str| {
         let mut parameter =
             json!({"name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": description});
@@ -58,7 +65,7 @@ mod tests {
 
     #[test]
     fn each_shot_is_in_the_range() {
-        let template = template("night {7}", 20, 3, Some("m.json"), None);
+        let template = template("night {7}", (20, 3), OnFailure::GoOn, Some("m.json"), None);
         let space = &template["steps"][0]["parameterSpace"]["taskParameterDefinitions"][0];
         assert_eq!((&space["range"], &space["chunks"]["defaultTaskCount"]), (&json!("1-20"), &json!(3)));
         assert_eq!(template["name"], "Rototoon night 7");
@@ -68,5 +75,7 @@ mod tests {
         let common = ["batch", "{{Param.Manifest}}", "-o", "{{Param.Output}}"];
         assert_eq!(args(0), json!([&common[..], &["--shots", "{{Task.Param.Shot}}", "--fine", "all"]].concat()));
         assert_eq!(args(1), json!([&common[..], &["--summary", "--fine", "keys"]].concat()));
+        let strict = super::template("night", (20, 3), OnFailure::Fail, None, None);
+        assert_eq!(strict["steps"][0]["script"]["actions"]["onRun"]["args"][7], "keys", "{strict}");
     }
 }

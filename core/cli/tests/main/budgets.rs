@@ -89,7 +89,8 @@ fn commands(document: &str) -> Vec<Vec<&str>> {
         vec!["import", document, "deep.svg", "-o", "out.json"],
     ];
     list.extend(
-        ["out.svg", "out.nk", "out.ntp", "out.py", "out.fxs", "out.json"].map(|to| vec!["export", document, "-o", to]),
+        ["out.svg", "out.nk", "out.ntp", "out.py", "out.fxs", "out.setting", "out.json"]
+            .map(|to| vec!["export", document, "-o", to]),
     );
     for what in ["overlay", "matte", "cutout", "ids"] {
         list.extend(["r_%d.png", "r_%d.exr"].map(|to| vec!["render", document, "-o", to, "--what", what]));
@@ -135,7 +136,7 @@ fn long_curves() -> String {
 }
 
 /// Clips whose style takes minutes to learn.
-fn many_clips() -> String {
+pub fn many_clips() -> String {
     let posture = |character: u32, motion: u32, frame: u32| -> Vec<[f64; 2]> {
         let sway = (0.4 * f64::from(frame + motion)).sin() * 0.1 * f64::from(1 + motion);
         (0..17).map(|k| f64::from(k) / 8.0).map(|y| [sway * y - 0.1 * f64::from(character) * y, y]).collect()

@@ -320,3 +320,52 @@ fn a_part_is_marked_as_hidden_and_as_there_again() {
     assert!(String::from_utf8_lossy(&refused.stderr).contains("frame 9 is outside the footage"));
     assert!(!cartoon.path("no.json").exists());
 }
+
+#[test]
+fn keys_that_were_changed_after_tracking_are_named() {
+    let cartoon = Cartoon::new();
+    let (project, tracked) = (cartoon.keyed(), cartoon.path("tracked.json"));
+    good(&["track", text(&project), "-o", text(&tracked)]);
+    let [out, shapes, sheet] = ["out.json", "out.svg", "sheet.png"].map(|name| cartoon.path(name));
+    let mattes = cartoon.path("matte_%02d.png");
+    let commands: [&[&str]; 5] = [
+        &["check", text(&tracked)],
+        &["snap", text(&tracked), "-o", text(&out)],
+        &["export", text(&tracked), "-o", text(&shapes)],
+        &["render", text(&tracked), "--what", "matte", "-o", text(&mattes)],
+        &["sheet", text(&tracked), "-o", text(&sheet)],
+    ];
+    for words in commands {
+        assert!(!good(words).contains("changed after tracking"), "{words:?}");
+    }
+    let mut edited = read(&tracked);
+    edited["parts"][0]["keys"]["6"] = square(24.0);
+    fs::write(&tracked, edited.to_string()).unwrap();
+    for words in commands {
+        let told = good(words);
+        assert_eq!(told.matches("changed after tracking").count(), 1, "{words:?}: {told}");
+    }
+    assert!(!good(&["track", text(&tracked), "-o", text(&tracked)]).contains("changed after tracking"));
+    assert!(!good(commands[2]).contains("changed after tracking"));
+}
+
+#[test]
+fn a_path_of_another_system_is_told() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    let with = |pattern: &str| {
+        let mut document = read(&project);
+        document["footage"]["pattern"] = pattern.into();
+        fs::write(&project, document.to_string()).unwrap();
+        bad(&["check", text(&project)], 1)
+    };
+    for (pattern, hint) in [
+        (r"Z:\show\f_%03d.png", "the path looks like one of Windows"),
+        ("$SHOW/f_%03d.png", "~ and variables such as $SHOW are not replaced"),
+        ("~/f_%03d.png", "~ and variables such as $SHOW are not replaced"),
+    ] {
+        let error = with(pattern);
+        assert!(error.contains(hint) && error.contains("no file"), "{error}");
+    }
+    assert!(!with("none/f_%03d.png").contains(';'), "nothing is said of other paths");
+}

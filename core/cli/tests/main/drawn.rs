@@ -253,7 +253,7 @@ fn forms_without_strokes_are_not_written_of_drawings() {
             Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(&path).arg("-o").arg(&to).output().unwrap();
         (output.status.code(), told(&output), to.exists())
     };
-    for name in ["a.nk", "a.ntp", "a.py", "a.jsx", "a.fxs"] {
+    for name in ["a.nk", "a.ntp", "a.py", "a.jsx", "a.fxs", "a.setting"] {
         let (status, said, written) = export(name);
         assert!(status == Some(1) && !written && said.lines().count() == 1, "{name}: {said}");
         let what = "The document has strokes on 1 frame and painted regions on 1 frame; .svg and .json take them";

@@ -1,10 +1,11 @@
 //! Tests of what stays of files when the program cannot write or is interrupted.
 
-use crate::cartoon::{Cartoon, FRAMES, bad, command, said, text};
+use crate::cartoon::{Cartoon, FRAMES, bad, command, good, said, text};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 /// Checks that a command which could not write has left the old file, and no temporary file.
 fn unharmed(cartoon: &Cartoon, out: &Path, before: &[u8]) {
@@ -18,7 +19,7 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
     fs::write(&out, "before").unwrap();
     // The limit on the file size makes writing fail half-way, as on a full disk.
-    let script = "trap '' XFSZ; ulimit -f 1; exec \"$@\"";
+    let script = "ulimit -f 1; exec \"$@\"";
     let output = Command::new("sh")
         .args(["-c", script, "sh", env!("CARGO_BIN_EXE_rototoon"), "track", text(&project), "-o", text(&out)])
         .output()
@@ -28,12 +29,62 @@ fn a_full_disk_leaves_the_file_as_it_was() {
     unharmed(&cartoon, &out, b"before");
 }
 
+#[test]
+fn a_document_in_a_pipe_has_an_absolute_pattern_and_a_dash_is_refused() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    let out = command(&["track", text(&project), "-o", "/dev/stdout"]).output().unwrap();
+    assert_eq!(out.status.code(), Some(0), "{}", said(&out));
+    let piped = cartoon.path("saved/elsewhere.json");
+    fs::create_dir(cartoon.path("saved")).unwrap();
+    fs::write(&piped, &out.stdout).unwrap();
+    assert!(good(&["check", text(&piped)]).contains("usable"), "it finds its frames from anywhere");
+    let error = bad(&["track", text(&project), "-o", "-"], 2);
+    assert!(error.contains("expected a file; for a file of this name write ./-"), "{error}");
+}
+
+/// `nohup` starts a program with SIGHUP ignored, and it goes on when the terminal goes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_program_under_nohup_outlives_its_terminal() {
+    let cartoon = Cartoon::new();
+    fs::write(cartoon.path("clips.json"), crate::budgets::many_clips()).unwrap();
+    let words =
+        ["style", "translate", "clips.json", "--style", "c0", "--motion", "m0", "--content", "c1", "-o", "out.json"];
+    let child = |script: &str| {
+        let program = env!("CARGO_BIN_EXE_rototoon");
+        let mut started = Command::new("sh");
+        started.args(["-c", script, "sh", program]).args(words).args(["--preset", "liang2012", "--rank", "400"]);
+        started.current_dir(cartoon.folder.path()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let hang_up = |child: &mut std::process::Child| {
+        std::thread::sleep(Duration::from_millis(700));
+        let sent = Command::new("kill").args(["-s", "HUP", &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        std::thread::sleep(Duration::from_millis(3000));
+        child.try_wait().unwrap()
+    };
+    let (mut kept, mut ended) = (child("trap '' HUP; exec \"$@\""), child("exec \"$@\""));
+    let status = hang_up(&mut kept);
+    let other = hang_up(&mut ended).or_else(|| {
+        // A loaded machine gets more than the 1.5 seconds that the program takes.
+        std::thread::sleep(Duration::from_secs(15));
+        ended.try_wait().unwrap()
+    });
+    let _ = (kept.kill(), ended.kill());
+    assert!(status.is_none(), "it ended with {status:?}");
+    assert!(matches!(other.and_then(|status| status.code()), Some(1 | 130)), "{other:?}");
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_device_is_an_error() {
     let cartoon = Cartoon::new();
     let error = bad(&["export", text(&cartoon.keyed()), "-o", "/dev/full"], 2);
-    assert!(error.contains("expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs or .json"), "{error}");
+    assert!(
+        error.contains("expected a name that ends in .svg, .nk, .ntp, .py, .jsx, .fxs, .setting or .json"),
+        "{error}"
+    );
     let error = bad(&["track", text(&cartoon.keyed()), "-o", "/dev/full"], 1);
     assert!(error.starts_with("error: /dev/full: cannot write: "), "{error}");
 }

@@ -3,6 +3,7 @@
 //! - [`svg`](mod@svg): one animated path for each part and each stroke
 //! - [`after_effects`](mod@after_effects): a script that makes masks in After Effects
 //! - [`archive`]: writes the XML archives of Boost
+//! - [`fusion`](mod@fusion): Polygon masks for Fusion
 //! - [`natron`](mod@natron): a script that makes a Roto node in Natron
 //! - [`natron_project`](mod@natron_project): a project of Natron with a Roto node
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
@@ -14,6 +15,7 @@
 
 pub mod after_effects;
 pub mod archive;
+pub mod fusion;
 mod names;
 pub mod natron;
 pub mod natron_project;
@@ -25,6 +27,7 @@ pub mod svg;
 pub mod xml;
 
 pub use after_effects::after_effects;
+pub use fusion::fusion;
 pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;
@@ -55,6 +58,7 @@ pub fn has_falloff(extension: &str, falloff: Falloff) -> bool {
 pub fn renamed<'a>(scene: &'a Scene, extension: &str) -> Vec<(&'a str, String)> {
     let names = match extension {
         "nk" => names::written(scene, nuke::plain),
+        "setting" => names::joined(scene, "_", fusion::plain),
         "ntp" | "fxs" | "svg" => names::written(scene, xml::plain),
         _ => return Vec::new(),
     };
@@ -85,6 +89,7 @@ mod tests {
             ("ntp", [true, true, false, false, false]),
             ("jsx", [true, false, false, true, false]),
             ("fxs", [true, false, false, false, false]),
+            ("setting", [true, false, false, false, false]),
             ("svg", [true, false, false, false, false]),
         ] {
             assert_eq!(
@@ -107,6 +112,8 @@ mod tests {
         for extension in ["ntp", "fxs", "svg"] {
             assert_eq!(renamed(&scene, extension), [("\u{1}", "part".into()), ("c\u{2}", "c".into())]);
         }
+        let fusion = [("a\"b", "a_b_2".into()), ("\u{1}", "_".into()), ("c\u{2}", "c_".into())];
+        assert_eq!(renamed(&scene, "setting"), fusion);
         assert_eq!(renamed(&scene, "jsx"), []);
     }
 }

@@ -11,6 +11,11 @@ const NAMELESS: &str = "part";
 
 /// The names of the scene's parts in a file. `form` gives a name in the characters of the format.
 pub(super) fn written(scene: &Scene, form: impl Fn(&str) -> String) -> Vec<String> {
+    joined(scene, " ", form)
+}
+
+/// The same with what stands before a number, for formats whose names have no blanks.
+pub(super) fn joined(scene: &Scene, before: &str, form: impl Fn(&str) -> String) -> Vec<String> {
     let own = || scene.parts.iter().map(|part| (part.name.as_str(), form(&part.name)));
     let mut taken: BTreeSet<String> = own().filter(|(name, form)| name == form).map(|(_, form)| form).collect();
     let mut one = |(name, form): (&str, String)| {
@@ -18,7 +23,7 @@ pub(super) fn written(scene: &Scene, form: impl Fn(&str) -> String) -> Vec<Strin
             return form;
         }
         let form = if form.trim().is_empty() { NAMELESS.to_owned() } else { form };
-        let numbered = (2..).map(|number| format!("{form} {number}"));
+        let numbered = (2..).map(|number| format!("{form}{before}{number}"));
         let free = std::iter::once(form.clone()).chain(numbered).find(|name| !taken.contains(name)).unwrap_or(form);
         taken.insert(free.clone());
         free

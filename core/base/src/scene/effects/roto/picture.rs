@@ -279,7 +279,7 @@ pub const PICTURE_PARAMETERS: [EffectParameter; 54] = [
         "Export file",
         EffectKind::File,
         MOTION,
-        "File of the shapes for other programs: .nk for Nuke, .ntp or .py for Natron, .jsx for After Effects, .fxs for Silhouette, .svg for browsers; or, as shot_%04d.exr, ids with Cryptomatte, a file for each frame.",
+        "File of the shapes for other programs: .nk for Nuke, .ntp or .py for Natron, .jsx for After Effects, .fxs for Silhouette, .setting for Fusion, .svg for browsers; or, as shot_%04d.exr, ids with Cryptomatte, a file for each frame.",
     ),
     parameter("export", "Export", EffectKind::Button, MOTION, "Writes the shapes to the export file."),
 ];
