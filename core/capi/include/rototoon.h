@@ -32,22 +32,22 @@
 #define ROTOTOON_ABI_VERSION 1
 
 // The two strokes correspond to each other.
-#define PAIR 0
+#define ROTOTOON_PAIR 0
 
 // The later stroke is a piece of the earlier one.
-#define SPLIT 1
+#define ROTOTOON_SPLIT 1
 
 // The earlier stroke is a piece of the later one.
-#define JOINED 2
+#define ROTOTOON_JOINED 2
 
 // The earlier stroke has no counterpart.
-#define VANISHED 3
+#define ROTOTOON_VANISHED 3
 
 // The later stroke has no counterpart.
-#define APPEARED 4
+#define ROTOTOON_APPEARED 4
 
 // The two strokes are pieces of one line and share a stretch of it.
-#define CHAINED 5
+#define ROTOTOON_CHAINED 5
 
 // The result of a call.
 enum RototoonStatus
