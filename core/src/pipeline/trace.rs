@@ -12,7 +12,7 @@ pub use on_keys::trace_drawings;
 use super::holds::{Holds, SHARE, Stretch};
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
-use crate::lines::{Drawing, Key, Options, Stroke, Tracked, between, carry};
+use crate::lines::{Drawing, Key, Options, Shown, Stroke, Tracked, between, carry, is_same};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
 use crate::project::traced::{TracedDrawing, TracedStroke};
@@ -222,15 +222,25 @@ impl Tracing<'_> {
             return Ok(());
         }
         let first = self.ink(place)?;
-        let mut before: Option<(Drawing, Vec<Tracked>)> = None;
+        let mut shown = Shown::default();
+        shown.learn(&all, &first);
+        let mut before: Option<Drawing> = None;
+        let (mut last, mut seen) = (all.clone(), all);
         let mut drawings = Vec::new();
         for frame in frames {
-            let (from, last) = before.take().map_or((None, all.clone()), |(drawing, strokes)| (Some(drawing), strokes));
             let drawing = self.look(frame)?;
-            let carried = carry(from.as_ref().unwrap_or(&first), &last, &drawing, &mut self.next);
-            drawings.push(numbers.ranked(&carried));
-            found.push((frame, carried.clone()));
-            before = Some((drawing, carried));
+            let from = before.as_ref().unwrap_or(&first);
+            let new = self.next;
+            last = carry(from, &last, &drawing, &mut self.next);
+            if is_same(from, &drawing) {
+                // It has the same strokes, also those of the artist that lie off the ink, and those that the artist did not draw.
+                seen.extend(last.iter().filter(|stroke| stroke.track >= new).cloned());
+            } else {
+                seen = shown.of(&last, &drawing);
+            }
+            drawings.push(numbers.ranked(&seen));
+            found.push((frame, seen.clone()));
+            before = Some(drawing);
         }
         place.ink = Some(first);
         let new = self.next - next;

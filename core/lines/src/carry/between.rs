@@ -21,7 +21,8 @@
 //! carrying from one side.
 
 use super::bind::{Bound, bind};
-use super::identify::identify;
+use super::identify::{identify, identify_seen};
+use super::shown::{Shown, is_same};
 use super::{EXPLAINS, carry, carry_known, covered, of_stroke, rest};
 use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
@@ -78,24 +79,31 @@ pub fn between<E>(
     let (drawing, came) = onward(count + 1, &before, forwards.last())?;
     drop(before);
     let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
-    let drawn = identify(&came, drawn, drawing.unit, next);
+    let mut shown = Shown::default();
+    shown.learn(&first.drawn, &first.drawing);
+    let drawn = identify_seen(&shown.of(&came, &drawing), &came, drawn, drawing.unit, next);
+    shown.learn(&drawn, &drawing);
     let began = came.into_iter().filter(|s| !known.contains(&s.track)).collect();
     let beside = bind([drawn.clone(), began], &drawing).strokes.split_off(drawn.len());
     let second = Key { drawing, drawn, beside };
     let late = Late { next, numbers: BTreeSet::new(), lost: BTreeMap::new(), strokes: Vec::new() };
-    let mut back = Backwards { known: &known, second, found: Vec::with_capacity(count), late };
+    let found = Vec::with_capacity(count);
+    let mut back = Backwards { known: &known, first: &first.drawing, second, found, shown, seen: Vec::new(), late };
     back.run(forwards, look)?;
-    back.found.reverse();
-    Ok((back.found, back.second))
+    Ok((back.seen(), back.second))
 }
 
 /// The way back from the second key.
 struct Backwards<'a> {
     /// The numbers of the first key.
     known: &'a BTreeSet<usize>,
+    first: &'a Drawing,
     second: Key,
     /// The strokes of the drawings between, from the last one on.
     found: Vec<Vec<Tracked>>,
+    shown: Shown,
+    /// As far as the drawings show them, with their places.
+    seen: Vec<Vec<(usize, Tracked)>>,
     late: Late<'a>,
 }
 
@@ -124,12 +132,12 @@ impl Backwards<'_> {
         let mut back = self.second.drawn.clone();
         while let Some(there) = forwards.pop() {
             // Where nothing comes from behind, as before a cut, what came from the front is all.
-            if back.is_empty() {
-                self.found.push(there);
-                continue;
-            }
             let place = forwards.len() + 1;
             let drawing = look(place)?;
+            if back.is_empty() {
+                self.add(there, &drawing);
+                continue;
+            }
             let all = [&back[..], &self.late.strokes].concat();
             let come = carry_known(after.as_ref().unwrap_or(&self.second.drawing), &all, &drawing);
             let late: Vec<Tracked>;
@@ -146,10 +154,31 @@ impl Backwards<'_> {
             let nearer_first = 2 * place <= count + 1;
             let [near, far] = if nearer_first { [there, back.clone()] } else { [back.clone(), there] };
             let bound = bind([near, far, began, late], &drawing);
-            self.found.push(self.late.add(bound, !nearer_first, &drawing));
+            let bound = self.late.add(bound, !nearer_first, &drawing);
+            self.add(bound, &drawing);
             after = Some(drawing);
         }
         Ok(())
+    }
+
+    /// Adds the strokes of a drawing.
+    fn add(&mut self, strokes: Vec<Tracked>, drawing: &Drawing) {
+        // What is the picture of a key has its strokes, which may lie off the ink.
+        let is_key = is_same(drawing, self.first) || is_same(drawing, &self.second.drawing);
+        self.seen.push(match is_key {
+            true => strokes.iter().cloned().enumerate().collect(),
+            false => self.shown.with_places(&strokes, drawing),
+        });
+        self.found.push(strokes);
+    }
+
+    /// What the drawings between show, in order, with the numbers that were found in the end.
+    fn seen(&mut self) -> Vec<Vec<Tracked>> {
+        let all = self.found.iter().zip(std::mem::take(&mut self.seen)).rev();
+        let of = |(strokes, seen): (&Vec<Tracked>, Vec<(usize, Tracked)>)| -> Vec<Tracked> {
+            seen.into_iter().map(|(k, shown)| Tracked { track: strokes[k].track, ..shown }).collect()
+        };
+        all.map(of).collect()
     }
 
     /// The strokes of the second key that meet a lost stroke of the first one: their numbers, and those that they take.

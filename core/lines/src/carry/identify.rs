@@ -8,6 +8,7 @@ use super::samples::{Cells, of_line};
 use crate::stroke::{Stroke, Tracked};
 use rototoon_base::geometry::Point;
 use rototoon_base::numeric::sparse_assignment::{Choice, assign_sparse};
+use std::collections::BTreeSet;
 
 /// Distance at which lines are the same, at 540 lines.
 const NEAR: f64 = 6.0;
@@ -48,6 +49,26 @@ pub fn identify(carried: &[Tracked], drawn: Vec<Stroke>, unit: f64, next: &mut u
     let number = |found: Option<usize>| found.map_or_else(|| (*next, *next += 1).0, |k| carried[k].track);
     let numbers: Vec<usize> = found.into_iter().map(number).collect();
     numbers.into_iter().zip(drawn).map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
+}
+
+/// As [`identify`], but `carried` strokes come after those that are `seen` on the drawing: of two on the same ink the hidden one is the wrong one.
+pub fn identify_seen(
+    seen: &[Tracked],
+    carried: &[Tracked],
+    drawn: Vec<Stroke>,
+    unit: f64,
+    next: &mut usize,
+) -> Vec<Tracked> {
+    let none = usize::MAX - drawn.len();
+    let mut found = identify(seen, drawn, unit, &mut none.clone());
+    let met: BTreeSet<usize> = found.iter().map(|stroke| stroke.track).collect();
+    let left: Vec<Tracked> = carried.iter().filter(|stroke| !met.contains(&stroke.track)).cloned().collect();
+    let open: Vec<&mut Tracked> = found.iter_mut().filter(|stroke| stroke.track >= none).collect();
+    let lines = open.iter().map(|stroke| stroke.stroke.clone()).collect();
+    for (stroke, named) in open.into_iter().zip(identify(&left, lines, unit, next)) {
+        stroke.track = named.track;
+    }
+    found
 }
 
 /// The share of the points of `a` within `reach` of a point of `b`.

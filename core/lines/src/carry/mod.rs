@@ -7,6 +7,8 @@
 //! 3. [`rivals`]: of strokes that lie on the same ink one stays.
 //! 4. [`rest`]: ink that no stroke explains lengthens strokes or begins new ones, with numbers of their own.
 //!
+//! All strokes are carried on, and a drawing has those that it [shows](Shown): one line of ink is explained by one stroke.
+//!
 //! Where the same picture is shown again, its strokes stay as they are.
 //!
 //! Between two drawn keys strokes come from both: [`between()`].
@@ -23,11 +25,13 @@ mod register;
 mod rest;
 mod rivals;
 mod samples;
+mod shown;
 
 pub use between::{Key, between};
 pub use bind::{Bound, bind};
 pub use identify::identify;
 pub use register::{Displaced, displaced};
+pub use shown::{Shown, is_same};
 
 use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
@@ -37,7 +41,6 @@ use follow::Followed;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polyline};
 use std::ops::Range;
-use std::sync::Arc;
 
 /// Share of a stroke that must be on ink, or it has ended.
 const ON_INK: f64 = 0.4;
@@ -75,7 +78,7 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
     let unit = to.unit;
     let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
     let reach = EXPLAINS * unit + 0.5 * to.width;
-    if Arc::ptr_eq(&from.picture, &to.picture) || from.picture == to.picture {
+    if is_same(from, to) {
         let rests = rest::left(&to.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, NEW * unit);
         return (strokes, rests);
     }
