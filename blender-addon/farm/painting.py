@@ -17,6 +17,7 @@ from rototoon.fills import Filled
 from ..blender import footage, guard
 from ..blender.errors import Problem
 from ..lines import plan as lines_plan
+from ..lines import properties
 from ..paint import filling, sheets
 from ..paint import plan as pl
 from . import collecting
@@ -25,7 +26,7 @@ SAME = 0.01
 """Pixels between places of clicks that are the same, and the largest difference of equal colours."""
 
 
-def sent(ob) -> tuple[dict[str, Any], dict[str, float]] | None:
+def sent(ob) -> tuple[dict[str, Any], dict[str, Any]] | None:
     """The document of an object's paint, with the clicks alone, and the options of the step `fill`. `None` if the artist has painted
     nothing. Raises a `Problem` if the paint can't be carried. Changes nothing."""
     name = ob.rototoon.fills_layer
@@ -33,7 +34,8 @@ def sent(ob) -> tuple[dict[str, Any], dict[str, float]] | None:
         return None
     plan = pl.make(ob, name, *lines_plan.film(ob))
     settings = ob.rototoon
-    return plan.document, {"sensitivity": round(settings.line_sensitivity, 4), "confidence": round(settings.fill_confidence, 4)}
+    step = {"sensitivity": round(settings.line_sensitivity, 4), "confidence": round(settings.fill_confidence, 4)}
+    return plan.document, {**step, **properties.left_out_step(settings)}
 
 
 def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:

@@ -20,7 +20,7 @@ from ..blender import grease_pencil as gp
 from ..blender import footage, guard
 from ..blender.errors import Problem
 from ..common.wording import counted
-from ..lines import choosing, tracing
+from ..lines import choosing, properties, tracing
 from ..lines import drawings as dr
 from ..lines import plan as lines_plan
 from ..lines.operators.tracing_base import plan_of
@@ -57,13 +57,13 @@ def sent(ob, wanted: Wanted) -> tuple[list[dict[str, Any]], str]:
     _need_lines(ob, chosen.layers)
     plan = plan_of(ob, chosen.layers, *lines_plan.film(ob), chosen.new)
     settings = ob.rototoon
-    step = {"style": settings.line_style.lower(), "sensitivity": settings.line_sensitivity}
+    step = {"style": settings.line_style.lower(), "sensitivity": settings.line_sensitivity, **properties.left_out_step(settings)}
     shots = []
     for group in plan.groups:
         own = [layer.name for layer in group.layers]
         home = chosen.home if chosen.home in own else own[-1]
         lines = {"layers": own, "home": home, "new": chosen.new, "hold": wanted.hold}
-        shots.append({"document": group.document, "trace": step, "lines": lines})
+        shots.append({"document": group.document, "trace": {**step, "keep_first": True} if group.keep_first else step, "lines": lines})
     return shots, chosen.left
 
 

@@ -32,6 +32,8 @@ class Layer:
     """In-betweens. Only those that were asked for have their content."""
     made: dict[int, st.Content] = field(default_factory=dict)
     """Traced drawings. Only those that were asked for have their content."""
+    sure: set[int] = field(default_factory=set)
+    """Traced drawings with strokes of which none is in any doubt: they were traced for themselves."""
     edited: set[int] = field(default_factory=set)
     """Keys that were traced until the artist changed them."""
     highest: dict[int, int] = field(default_factory=dict)
@@ -90,6 +92,8 @@ def _layer(name: str, layer, record: records.Layer, wanted: set[int] | None, slo
         content = st.read(handle)
         if kind == gp.GENERATED and _is_traced(content, frame, record, slots):
             found.made[frame] = asked(content, frame)
+            if strokes and (content.point.get(gp.CONFIDENCE, np.ones(0)) >= 1).all():
+                found.sure.add(frame)
         elif kind == gp.GENERATED and strokes and content.strokes(gp.TWEENED).all():
             found.other[frame] = asked(content, frame)
         else:

@@ -46,6 +46,8 @@ class Group:
     document: dict[str, Any]
     folder: str
     mapper: Mapper
+    keep_first: bool = False
+    """Whether the first of the pictures was traced for itself by an earlier run, and stays so."""
 
 
 @dataclass
@@ -88,7 +90,7 @@ def make(ob, layers: list[dr.Layer], first: int, last: int, new: bool) -> Plan:
             by_frames.setdefault(tuple(seeds), []).append(layer)
     if not by_frames:
         raise Problem("There are no strokes to carry: draw them on a frame of the footage first")
-    groups = [_group(ob, own, frames, first, last, pattern) for frames, own in by_frames.items()]
+    groups = [_group(ob, own, frames, first, last, pattern, new) for frames, own in by_frames.items()]
     return Plan(groups, first, last, new, ob.rototoon.frame_offset, sums={layer.name: layer.sums() for layer in layers})
 
 
@@ -150,7 +152,7 @@ def _seeds_of(layer: dr.Layer, first: int, last: int, shown: tuple[int, int]) ->
     return sorted({*inside, *(frame for frame in around if frame is not None)})
 
 
-def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str) -> Group:
+def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str, new: bool) -> Group:
     names = [layer.name for layer in layers]
     points = {k: _points(layer, frames) for k, layer in enumerate(layers)}
     low, high = min([first, *frames]), max([last, *frames])
@@ -162,7 +164,8 @@ def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last
             seeds[frame] = seed
             drawn.append({"frame": frame - offset, "strokes": strokes})
     document = {"rototoon": VERSION, "footage": footage.fields(ob, pattern), "parts": [], "drawings": drawn}
-    return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper)
+    keep_first = new and low not in seeds and any(low in layer.sure for layer in layers)
+    return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper, keep_first)
 
 
 def _points(layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:

@@ -11,6 +11,20 @@ STYLES = (
 )
 
 
+NON_PHOTO_BLUE = (0.643, 0.867, 0.929)
+
+
+def left_out(settings) -> tuple[tuple[float, float, float], ...]:
+    """The colours of pencils whose lines are left out, in 256 steps: those of a batch's step."""
+    return (tuple(round(255 * value) / 255 for value in settings.line_left_out),) if settings.line_leave_out else ()
+
+
+def left_out_step(settings) -> dict[str, str]:
+    """The same as an option of a batch's step."""
+    colours = ["#" + "".join(f"{round(255 * value):02x}" for value in colour) for colour in left_out(settings)]
+    return {"leave_out": ",".join(colours)} if colours else {}
+
+
 class LineSettings:
     """Settings of lines, in the property `rototoon` of every object."""
 
@@ -24,6 +38,21 @@ class LineSettings:
         max=10.0,
         soft_min=0.25,
         soft_max=4.0,
+    )
+    line_leave_out: bpy.props.BoolProperty(
+        name="Leave Out",
+        description="Leave out lines of a coloured pencil, such as construction lines, in its lighter and darker shades. Lines of other "
+        "colours stay where they cross them",
+        default=False,
+    )
+    line_left_out: bpy.props.FloatVectorProperty(
+        name="Left Out",
+        description="The pencil that is left out, as it looks on white paper",
+        subtype="COLOR_GAMMA",
+        size=3,
+        min=0.0,
+        max=1.0,
+        default=NON_PHOTO_BLUE,
     )
     show_doubts: bpy.props.BoolProperty(
         name="Mark Doubtful Strokes",

@@ -34,6 +34,8 @@ class Options:
     style: str = "auto"
     sensitivity: float = 1.0
     threads: int = 0
+    leave_out: tuple[tuple[float, ...], ...] = ()
+    """Colours of pencils whose lines are left out."""
 
 
 @dataclass
@@ -85,6 +87,8 @@ def worker(plan: pl.Plan, options: Options, afterwards: Callable[[], None] = lam
                         options.sensitivity,
                         group.pictures,
                         lambda done, step, begun=begun, share=share: progress(begun + share * done, step),
+                        leave_out=options.leave_out,
+                        keep_first=group.keep_first,
                         threads=options.threads,
                     )
                 )

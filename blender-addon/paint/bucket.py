@@ -18,6 +18,7 @@ from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..lines import plan as lines_plan
+from ..lines import properties
 from . import clicks, filling, painted, shapes, sheets
 from . import plan as pl
 
@@ -94,7 +95,8 @@ def _regions(ob, pattern: str, frame: int, asked: list[clicks.Click], sensitivit
     document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
     session = filling.make(document, os.path.dirname(pattern))
     try:
-        return filling.regions_on(session.fill(None, sensitivity, (number, number)), number)
+        found = session.fill(None, sensitivity, (number, number), leave_out=properties.left_out(ob.rototoon))
+        return filling.regions_on(found, number)
     finally:
         session.close()
 

@@ -34,6 +34,8 @@ class Options:
     confidence: float = 0.0
     """Regions whose colour is less sure stay unpainted."""
     threads: int = 0
+    leave_out: tuple[tuple[float, ...], ...] = ()
+    """Colours of pencils whose lines are left out."""
 
 
 @dataclass
@@ -62,7 +64,7 @@ def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
             plan.held = lines_plan.held_pictures(plan.document["footage"], plan.first, plan.last, plan.offset)
         session = make(plan.document, plan.folder)
         try:
-            chosen = {"confidence": options.confidence, "threads": options.threads}
+            chosen = {"confidence": options.confidence, "threads": options.threads, "leave_out": options.leave_out}
             return session.fill(None, options.sensitivity, plan.pictures, progress, **chosen)
         finally:
             session.close()

@@ -168,18 +168,23 @@ class Session:
         frames: tuple[int, int] | None = None,
         progress: Progress | None = None,
         *,
+        leave_out: Iterable[Sequence[float]] = (),
+        keep_first: bool = False,
         threads: int = 0,
     ) -> Traced:
         """Traces the lines of the footage as strokes, the same strokes on every frame, and stores ``traced`` in the document.
 
         Work begins on the first of the document's ``drawings``, whose strokes are carried to the other frames. Frames with a drawing
-        keep its strokes, in their order. Without drawings the first frame is traced.
+        keep its strokes, in their order. Without drawings the first frame is traced; so it is with `keep_first` and a first drawing on
+        a later frame, and the frames between are bound to both. Strokes of an earlier run in ``traced`` that are all sure on the first frame say the same.
 
         `style` is ``auto``, ``clean`` or ``rough``: lines that were sketched with several strokes become one. With `sensitivity` 2, ink
         may be half as dark as usual. `frames` are the first and the last frame, by default those of the footage; strokes of other
-        frames stay. Returns the strokes of all frames. Raises `Cancelled`; the document is unchanged then.
+        frames stay. `leave_out` are colours of pencils whose lines are left out, sRGB from 0 to 1 as they look on white paper.
+        Returns the strokes of all frames. Raises `Cancelled`; the document is unchanged then.
         """
-        options: dict[str, Any] = {"style": style, "sensitivity": sensitivity, "threads": threads}
+        options: dict[str, Any] = {"style": style, "sensitivity": sensitivity, "threads": threads, "keep_first": keep_first}
+        options["leave_out"] = _colours(leave_out)
         if frames is not None:
             options["frames"] = [int(frame) for frame in frames]
         with handles.progress_callback(progress) as callback:
@@ -194,6 +199,7 @@ class Session:
         progress: Progress | None = None,
         *,
         confidence: float = 0.0,
+        leave_out: Iterable[Sequence[float]] = (),
         threads: int = 0,
     ) -> Filled:
         """Paints the regions of line drawings by the clicks of a painter, and stores ``fills`` and ``filled`` in the document.
@@ -202,10 +208,11 @@ class Session:
         frame with clicks, and colours are carried from there to the other frames. Clicks on later frames overrule what was carried there.
 
         With `sensitivity` 2, ink may be half as dark as usual. `frames` are the first and the last frame, by default those of the
-        footage; regions of other frames stay. Regions whose colour has less than `confidence` stay unpainted. Returns the regions of
-        all frames. Raises `Cancelled`; the document is unchanged then.
+        footage; regions of other frames stay. Regions whose colour has less than `confidence` stay unpainted. `leave_out` is that of
+        `trace`. Returns the regions of all frames. Raises `Cancelled`; the document is unchanged then.
         """
         options: dict[str, Any] = {"sensitivity": sensitivity, "confidence": confidence, "threads": threads}
+        options["leave_out"] = _colours(leave_out)
         if frames is not None:
             options["frames"] = [int(frame) for frame in frames]
         before = None if clicks is None else self.fills()
@@ -298,3 +305,7 @@ def _flat(points: Points) -> array.array[float]:
     if view.format != "d" or view.ndim != 2 or view.shape is None or view.shape[1] != 2:
         raise RototoonError(f"points: expected float64 of shape (N, 2), found {view.format} of shape {view.shape}")
     return array.array("d", view.tobytes())
+
+
+def _colours(given: Iterable[Sequence[float]]) -> list[list[float]]:
+    return [[float(value) for value in colour] for colour in given]

@@ -15,7 +15,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.operators import OnDrawing
-from ..lines import doubts, drawings, tracing
+from ..lines import doubts, drawings, properties, tracing
 from ..lines import plan as plans
 from ..lines.operators.tracing_base import OnFootage, plan_of
 from .refusing import need, told
@@ -106,7 +106,8 @@ def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     jobs.clear_the_way()
     plan = plan_of(ob, names, *(frames or plans.film(ob)), new)
     style = style or settings.line_style.lower()
-    options = tracing.Options(style, settings.line_sensitivity if sensitivity is None else sensitivity)
+    sensitivity = settings.line_sensitivity if sensitivity is None else sensitivity
+    options = tracing.Options(style, sensitivity, leave_out=properties.left_out(settings))
     worker = tracing.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))

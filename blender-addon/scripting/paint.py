@@ -15,6 +15,7 @@ from ..blender.errors import Problem
 from ..common import jobs
 from ..common.operators import OnDrawing
 from ..lines import plan as lines_plan
+from ..lines import properties
 from ..lines.doubts import of_strokes
 from ..lines.operators.tracing_base import OnFootage
 from ..paint import bucket, filling, sheets
@@ -100,6 +101,7 @@ def fill_drawings(
     options = filling.Options(
         settings.line_sensitivity if sensitivity is None else sensitivity,
         settings.fill_confidence if confidence is None else confidence,
+        leave_out=properties.left_out(settings),
     )
     worker = filling.worker(plan, options)
     worker.run_here(progress)

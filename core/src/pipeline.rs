@@ -49,7 +49,7 @@ pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, 
 pub use shapeless::nothing_for;
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
-pub use trace::{TraceMemory, trace, trace_drawings};
+pub use trace::{TraceMemory, TraceOptions, trace, trace_drawings};
 pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
 pub use untracked::untracked;

@@ -60,7 +60,7 @@ class Tracer:
     def from_document(cls, document, folder):
         return cls(copy.deepcopy(document))
 
-    def trace(self, style="auto", sensitivity=1.0, frames=None, progress=None, *, threads=0):
+    def trace(self, style="auto", sensitivity=1.0, frames=None, progress=None, *, leave_out=(), keep_first=False, threads=0):
         if progress is not None and progress(0.5, "tracing") is False:
             raise Cancelled
         drawn = {each["frame"]: [stroke["points"] for stroke in each["strokes"]] for each in self.state["drawings"]}
@@ -132,7 +132,7 @@ class Painter:
     def from_document(cls, document, folder):
         return cls(copy.deepcopy(document))
 
-    def fill(self, clicks=None, sensitivity=1.0, frames=None, progress=None, *, confidence=0.0, threads=0):
+    def fill(self, clicks=None, sensitivity=1.0, frames=None, progress=None, *, confidence=0.0, leave_out=(), threads=0):
         if progress is not None and progress(0.5, "painting") is False:
             raise Cancelled
         first = self.state["fills"][0]

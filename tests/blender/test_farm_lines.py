@@ -73,9 +73,10 @@ def move(addon, ob, layer, frame):
 
 def test_a_film_is_traced_there_as_here(addon, film, tmp_path):  # noqa: F811
     film.rototoon.line_style, film.rototoon.line_sensitivity = "CLEAN", 1.25
+    film.rototoon.line_leave_out = True
     before = shots.snapshot(film)
     steps, (document,) = send(tmp_path, lines="TRACE")
-    assert steps == [[{"do": "check"}, {"do": "trace", "style": "clean", "sensitivity": 1.25}]]
+    assert steps == [[{"do": "check"}, {"do": "trace", "style": "clean", "sensitivity": 1.25, "leave_out": "#a4dded"}]]
     assert document["parts"] == [] and document["drawings"] == [] and "traced" not in document
     assert shots.snapshot(film) == before, "sending changes nothing"
     assert said(addon).warnings == (), "contours are not missed"

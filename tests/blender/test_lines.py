@@ -104,6 +104,28 @@ def test_a_changed_traced_drawing_is_the_artists(addon, traced, fake):
     assert all(np.array_equal(after[number], before[number]) for number in before)
 
 
+def test_an_edited_look_on_a_later_frame_leaves_the_first_frame(addon, traced):
+    before = ls.strokes(addon, traced, "Lines", 1)
+    drawing = next(frame.drawing for frame in traced.data.layers["Lines"].frames if frame.frame_number == 4)
+    for point in drawing.strokes[2].points:
+        point.opacity = 0.5
+    number = list(ls.strokes(addon, traced, "Lines", 4))[2]
+    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+    after = ls.strokes(addon, traced, "Lines", 1)
+    assert after.keys() == before.keys()
+    assert all(np.allclose(after[number], points, atol=1e-3) for number, points in before.items())
+    kept = next(frame.drawing for frame in traced.data.layers["Lines"].frames if frame.frame_number == 4)
+    assert np.allclose([point.opacity for point in kept.strokes[2].points], 0.5)
+    assert list(ls.strokes(addon, traced, "Lines", 4))[2] == number
+
+
+def test_a_coloured_pencil_is_left_out(addon, film):
+    film.rototoon.line_leave_out, film.rototoon.line_left_out = True, (0.9, 0.3, 0.25)
+    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+    found = ls.strokes(addon, film, "Lines", 1).values()
+    assert sorted(min(range(6), key=lambda k: away(points, ls.lines(0)[k][0])) for points in found) == [0, 1, 2, 3, 4], "all but the red one"
+
+
 def test_a_deleted_stroke_stays_deleted_on_its_frame(addon, traced, fake):
     gp = addon("blender.grease_pencil")
     gp.remove_strokes(gp.drawings(gp.find_layer(traced, "Lines"))[4][0], [2])

@@ -15,7 +15,7 @@ from ...capture.operators.footage_from_reference import reference_image
 from ...common.operators import Long, OnDrawing
 from .. import drawings as dr
 from .. import plan as pl
-from .. import tracing
+from .. import properties, tracing
 from .tracing_base import told
 
 LIFT = 1e-3
@@ -58,7 +58,8 @@ class ROTOTOON_OT_trace_image(Long, OnDrawing, bpy.types.Operator):
             self._tidy()
             raise
         self._plan = pl.of_picture(layer, frame, path, size, _Still(self._ob, empty, self._home, size))
-        options = tracing.Options(settings.line_style.lower(), settings.line_sensitivity, preferences.threads())
+        chosen = settings.line_style.lower(), settings.line_sensitivity, preferences.threads(), properties.left_out(settings)
+        options = tracing.Options(*chosen)
         return tracing.worker(self._plan, options, self._tidy)
 
     def _tidy(self) -> None:

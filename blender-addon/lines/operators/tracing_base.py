@@ -82,7 +82,8 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
         self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
-        options = tracing.Options(style.lower(), self.chosen_sensitivity(settings), preferences.threads())
+        chosen = style.lower(), self.chosen_sensitivity(settings), preferences.threads(), properties.left_out(settings)
+        options = tracing.Options(*chosen)
         return tracing.worker(self._plan, options)
 
     def finish(self, _context, work):

@@ -5,6 +5,7 @@ import bpy
 from ...blender import preferences
 from ...common.operators import Long
 from ...common.wording import counted, listed
+from ...lines import properties
 from ...lines.operators.tracing_base import Framed, OnFootage, Sensitive
 from .. import filling
 from .. import plan as pl
@@ -24,7 +25,8 @@ class ROTOTOON_OT_fill_drawings(Framed, Sensitive, Long, OnFootage, bpy.types.Op
         settings = self._ob.rototoon
         self._plan = pl.make(self._ob, pl.layer_name(self._ob), *self.span(context))
         self._plan.hold = self.hold
-        options = filling.Options(self.chosen_sensitivity(settings), settings.fill_confidence, preferences.threads())
+        chosen = self.chosen_sensitivity(settings), settings.fill_confidence, preferences.threads(), properties.left_out(settings)
+        options = filling.Options(*chosen)
         return filling.worker(self._plan, options)
 
     def finish(self, _context, work):

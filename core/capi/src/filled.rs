@@ -1,12 +1,12 @@
 //! Clicks of a painter, painted regions in flat arrays, and the options of painting. [`crate::filled_abi`] documents all.
 
 use crate::status::Failure;
-use crate::traced::{SENSITIVITY, within};
+use crate::traced::{SENSITIVITY, colours, within};
 use rototoon::geometry::Point;
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{DOUBT, FillOptions, FillReport, MissedClick};
 use rototoon::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion};
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{Colour, FrameNumber};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -121,6 +121,7 @@ pub fn report_to_json(report: &FillReport) -> String {
 #[serde(deny_unknown_fields, default)]
 pub struct Asked {
     sensitivity: f64,
+    leave_out: Vec<Colour>,
     confidence: f64,
     frames: Option<[FrameNumber; 2]>,
     /// Number of threads; 0 for one per core.
@@ -130,7 +131,7 @@ pub struct Asked {
 impl Default for Asked {
     fn default() -> Self {
         let FillOptions { lines, confidence } = FillOptions::default();
-        Self { sensitivity: lines.sensitivity, confidence, frames: None, threads: 0 }
+        Self { sensitivity: lines.sensitivity, leave_out: lines.leave_out, confidence, frames: None, threads: 0 }
     }
 }
 
@@ -147,12 +148,13 @@ impl Asked {
         };
         within("sensitivity", asked.sensitivity, SENSITIVITY)?;
         within("confidence", asked.confidence, 0.0..=1.0)?;
+        colours(&asked.leave_out)?;
         Ok(asked)
     }
 
     /// The options of the painter.
     pub fn options(&self) -> FillOptions {
-        let lines = Options { style: Style::Auto, sensitivity: self.sensitivity };
+        let lines = Options { style: Style::Auto, sensitivity: self.sensitivity, leave_out: self.leave_out.clone() };
         FillOptions { lines, confidence: self.confidence }
     }
 

@@ -68,7 +68,8 @@ pub unsafe extern "C" fn rototoon_session_fills(
 /// document. Work begins on the first frame with clicks; from there colours are carried to the other frames. Clicks on
 /// later frames overrule what was carried there.
 ///
-/// `options` is a JSON object, in which all fields may be left out: `sensitivity` to faint ink, 0.1 to 10; `confidence`,
+/// `options` is a JSON object, in which all fields may be left out: `sensitivity` to faint ink, 0.1 to 10; `leave_out`, as for
+/// `rototoon_session_trace`; `confidence`,
 /// 0 to 1, below which a region stays unpainted; `frames`, a list of the first and the last frame; `threads`, 0 for one
 /// per core. Regions of frames outside of `frames` stay in the document. It is an error if there is no click.
 ///

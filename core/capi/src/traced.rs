@@ -1,9 +1,10 @@
 //! Traced strokes in flat arrays, and the options of tracing. `rototoon_session_trace` documents both.
 
 use crate::status::Failure;
-use rototoon::lines::{Options, Style};
+use rototoon::lines::{Options, Style, ink};
+use rototoon::pipeline::TraceOptions;
 use rototoon::project::traced::TracedDrawing;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{Colour, FrameNumber};
 use serde::Deserialize;
 use std::ops::RangeInclusive;
 
@@ -102,13 +103,27 @@ pub(crate) fn within(name: &str, found: f64, range: RangeInclusive<f64>) -> Resu
     Err(Failure::Error(format!("options: {name}: found {found}, expected a number from {least} to {most}")))
 }
 
+/// Refuses colours of pencils that cannot be left out.
+pub(crate) fn colours(leave_out: &[Colour]) -> Result<(), Failure> {
+    let is_wrong =
+        |colour: &&Colour| !colour.iter().all(|value| (0.0..=1.0).contains(value)) || !ink::can_leave_out(**colour);
+    match leave_out.iter().find(is_wrong) {
+        None => Ok(()),
+        Some(found) => Err(Failure::Error(format!(
+            "options: leave_out: found {found:?}, expected a colour with a hue, such as [0.64, 0.87, 0.93] for light blue: three numbers from 0 to 1"
+        ))),
+    }
+}
+
 /// The JSON options of tracing.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Asked {
     style: AskedStyle,
     sensitivity: f64,
+    leave_out: Vec<Colour>,
     frames: Option<[FrameNumber; 2]>,
+    keep_first: bool,
     /// Number of threads; 0 for one per core.
     pub threads: usize,
 }
@@ -123,7 +138,14 @@ enum AskedStyle {
 
 impl Default for Asked {
     fn default() -> Self {
-        Self { style: AskedStyle::Auto, sensitivity: Options::default().sensitivity, frames: None, threads: 0 }
+        Self {
+            style: AskedStyle::Auto,
+            sensitivity: 1.0,
+            leave_out: Vec::new(),
+            frames: None,
+            keep_first: false,
+            threads: 0,
+        }
     }
 }
 
@@ -135,17 +157,19 @@ impl Asked {
             _ => serde_json::from_str(json).map_err(|error| Failure::Error(format!("options: {error}")))?,
         };
         within("sensitivity", asked.sensitivity, SENSITIVITY)?;
+        colours(&asked.leave_out)?;
         Ok(asked)
     }
 
     /// The options of the tracer.
-    pub fn options(&self) -> Options {
+    pub fn options(&self) -> TraceOptions {
         let style = match self.style {
             AskedStyle::Auto => Style::Auto,
             AskedStyle::Clean => Style::Clean,
             AskedStyle::Rough => Style::Rough,
         };
-        Options { style, sensitivity: self.sensitivity }
+        let leave_out = self.leave_out.clone();
+        TraceOptions { lines: Options { style, sensitivity: self.sensitivity, leave_out }, keep_first: self.keep_first }
     }
 
     /// The frames to trace; `None` for all.
@@ -194,12 +218,16 @@ mod tests {
 
     #[test]
     fn options_are_read_and_checked() {
-        let asked = Asked::parse(r#"{"style": "rough", "frames": [3, 5], "threads": 2}"#).unwrap();
-        assert_eq!((asked.options().style, asked.frames(), asked.threads), (Style::Rough, Some(3..=5), 2));
-        assert_eq!(Asked::parse("").unwrap().options(), Options::default());
+        let asked = Asked::parse(r#"{"style": "rough", "frames": [3, 5], "threads": 2, "keep_first": true}"#).unwrap();
+        assert_eq!((asked.options().lines.style, asked.frames(), asked.threads), (Style::Rough, Some(3..=5), 2));
+        assert!(asked.options().keep_first);
+        assert_eq!(Asked::parse("").unwrap().options(), TraceOptions::default());
         let said = |json: &str| Asked::parse(json).unwrap_err().to_string();
         assert_eq!(said(r#"{"sensitivity": 0}"#), "options: sensitivity: found 0, expected a number from 0.1 to 10");
         assert!(said(r#"{"style": "neat"}"#).starts_with("options: unknown variant `neat`"));
+        assert!(said(r#"{"leave_out": [[0.5, 0.5, 0.5]]}"#).starts_with("options: leave_out: found [0.5, 0.5, 0.5]"));
+        let blue = Asked::parse(r#"{"leave_out": [[0.5, 0.75, 1.0]]}"#).unwrap();
+        assert_eq!(blue.options().lines.leave_out, [[0.5, 0.75, 1.0]]);
         assert!(said(r#"{"colour": 1}"#).starts_with("options: unknown field `colour`"));
     }
 }

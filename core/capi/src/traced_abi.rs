@@ -13,11 +13,13 @@ use std::ptr::{null, null_mut};
 /// Traces the lines of the footage as strokes, the same strokes on every frame, and stores `traced` in the document.
 ///
 /// Work begins on the first drawing of the document's `drawings`. Its strokes are carried to the other frames. Frames
-/// with a drawing keep the strokes of that drawing, in their order. Without drawings the first frame is traced.
+/// with a drawing keep the strokes of that drawing, in their order. Without drawings the first frame is traced; so it is with them if it was
+/// traced for itself before, and the frames up to the first drawing are bound to both. Where the document has its strokes in `traced`, that is known.
 ///
 /// `options` is a JSON object, in which all fields may be left out: `style`, "auto", "clean" or "rough" (lines are
-/// sketched with several strokes, which become one); `sensitivity` to faint ink, 0.1 to 10; `frames`, a list of the
-/// first and the last frame; `threads`, 0 for one per core. Strokes of frames outside of `frames` stay in the document.
+/// sketched with several strokes, which become one); `sensitivity` to faint ink, 0.1 to 10; `leave_out`, a list of the
+/// colours of pencils whose lines are left out, three numbers each, sRGB from 0 to 1 as they look on white paper; `frames`, a list of the
+/// first and the last frame; `keep_first`, true if the first frame was traced for itself before, and stays so; `threads`, 0 for one per core. Strokes of frames outside of `frames` stay in the document.
 ///
 /// `traced` has the strokes of all frames, as `rototoon_session_traced` gives them.
 #[unsafe(no_mangle)]

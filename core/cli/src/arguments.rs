@@ -3,9 +3,10 @@
 use crate::failure::Failure;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
+use rototoon::lines::ink;
 use rototoon::project::schema::MAX_FRAME_NUMBER;
-use rototoon::scene::FrameNumber;
 use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
+use rototoon::scene::{Colour, FrameNumber};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -190,4 +191,46 @@ pub fn sensitivity() -> Arg {
         .help("Sensitivity to faint ink, from 0.1 to 10: with 2, ink may be half as dark as usual")
         .default_value("1")
         .value_parser(within(0.1, 10.0))
+}
+
+/// `--leave-out COLOURS` of what finds ink.
+pub fn leave_out() -> Arg {
+    Arg::new("leave-out")
+        .long("leave-out")
+        .value_name("COLOURS")
+        .help(
+            "Leaves out lines of a coloured pencil, such as construction lines, in its lighter and darker shades: blue (non-photo blue), red, green, \
+             orange, violet, or a colour as #rrggbb, as it looks on white paper. Several are parted by commas",
+        )
+        .value_delimiter(',')
+        .value_parser(pencil)
+}
+
+/// The colours of `--leave-out`.
+pub fn left_out(given: &ArgMatches) -> Vec<Colour> {
+    given.get_many::<Colour>("leave-out").unwrap_or_default().copied().collect()
+}
+
+/// A colour with a hue, by name or as `#rrggbb`.
+fn pencil(text: &str) -> Result<Colour, String> {
+    let named = [
+        ("blue", 0xa4_dd_ed),
+        ("red", 0xe6_5a_4d),
+        ("green", 0x66_b3_66),
+        ("orange", 0xff_99_33),
+        ("violet", 0xa0_70_d0),
+    ];
+    let number = match named.iter().find(|(name, _)| *name == text) {
+        Some((_, number)) => Some(*number),
+        None => text
+            .strip_prefix('#')
+            .filter(|digits| digits.len() == 6)
+            .and_then(|digits| u32::from_str_radix(digits, 16).ok()),
+    };
+    let expected = "expected blue, red, green, orange, violet, or a colour as #rrggbb";
+    let number = number.ok_or_else(|| expected.to_owned())?;
+    let colour = [16, 8, 0].map(|shift| f32::from((number >> shift) as u8) / 255.0);
+    ink::can_leave_out(colour)
+        .then_some(colour)
+        .ok_or_else(|| "a grey cannot be told from the lines: expected a colour with a hue".to_owned())
 }

@@ -21,6 +21,7 @@ pub fn command() -> Command {
         .arg(arguments::output("OUT", "The document to write, with painted regions in its field \"filled\""))
         .arg(arguments::frames())
         .arg(arguments::sensitivity())
+        .arg(arguments::leave_out())
         .arg(
             Arg::new("least_confidence")
                 .long("confidence")
@@ -42,7 +43,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);
-    let options = FillOptions { lines: Options { style: Style::Auto, sensitivity }, confidence };
+    let lines = Options { style: Style::Auto, sensitivity, leave_out: arguments::left_out(given) };
+    let options = FillOptions { lines, confidence };
     let (document, report) = progress::run(arguments::threads(given), |bar| {
         let report =
             pipeline::fill(&mut document, &home, frames, &options, bar).map_err(|error| Failure::of(error, from))?;

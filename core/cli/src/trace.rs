@@ -42,6 +42,21 @@ pub fn command() -> Command {
                 .value_parser(styles),
         )
         .arg(arguments::sensitivity())
+        .arg(arguments::leave_out())
+        .arg(
+            Arg::new("keep-first")
+                .long("keep-first")
+                .help(
+                    "The first frame was traced for itself before, and stays so. Then the frames up to the document's first drawing are bound to both. \
+                     A document with strokes of that run says so itself",
+                )
+                .conflicts_with("drawings")
+                .num_args(0..=1)
+                .require_equals(true)
+                .default_value("off")
+                .default_missing_value("on")
+                .value_parser(["on", "off"]),
+        )
         .args(arguments::of_stage(Stage::Run))
 }
 
@@ -58,11 +73,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         _ => Style::Auto,
     };
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
-    let options = Options { style, sensitivity };
+    let lines = Options { style, sensitivity, leave_out: arguments::left_out(given) };
     if let Some(keys) = given.get_many::<FrameNumber>("drawings") {
-        return on_keys(document, (from, to), &keys.copied().collect(), &options, arguments::threads(given));
+        return on_keys(document, (from, to), &keys.copied().collect(), &lines, arguments::threads(given));
     }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
+    let options = pipeline::TraceOptions { lines, keep_first: arguments::choice(given, "keep-first") == "on" };
     let document = progress::run(arguments::threads(given), |bar| {
         pipeline::trace(&mut document, &home, frames, &options, None, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)

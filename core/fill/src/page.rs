@@ -47,7 +47,7 @@ pub struct Paint {
 impl Page {
     /// Finds the regions of a picture.
     pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
-        let regions = Regions::new(&ink::measure(&picture, options.sensitivity).mask);
+        let regions = Regions::new(&ink::measure(&picture, options).mask);
         let layout = Layout::new(&regions);
         let lines = Drawing::new(picture, options);
         Self { strokes: lines.strokes(), lines, regions, layout }

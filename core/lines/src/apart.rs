@@ -10,6 +10,7 @@
 //! together by chance look right. The edges of a painted picture are those of its luma.
 
 use crate::ink::{self, Ink, distance};
+use crate::stroke::Options;
 use crate::thin;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{Colour, Raster};
@@ -68,7 +69,7 @@ impl Shown {
     pub fn new(picture: &Raster<Colour>) -> Self {
         let factor = (picture.height() as f64 / LINES).max(1.0);
         let picture = if factor > 1.0 { Cow::Owned(reduce(picture, factor)) } else { Cow::Borrowed(picture) };
-        let found = ink::measure(&picture, 1.0);
+        let found = ink::measure(&picture, &Options::default());
         let unit = picture.height().max(1) as f64 / 540.0;
         let lines = if is_painted(&found, unit) {
             canny(&picture, &CannyOptions::default())

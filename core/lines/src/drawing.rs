@@ -28,7 +28,7 @@ pub struct Drawing {
 impl Drawing {
     /// Finds the ink of a picture.
     pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
-        let mut ink = ink::measure(&picture, options.sensitivity);
+        let mut ink = ink::measure(&picture, options);
         let unit = picture.height().max(1) as f64 / 540.0;
         let mut graph = Graph::new(&ink);
         // First of all, since what is filled between sketched strokes was not drawn black.

@@ -35,17 +35,19 @@ pub enum Style {
 }
 
 /// Options of tracing.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The kind of drawing.
     pub style: Style,
     /// Sensitivity to faint ink; 1 takes the level that is found in the picture.
     pub sensitivity: f64,
+    /// Colours of pencils whose lines are left out, as they look on white paper, such as non-photo blue.
+    pub leave_out: Vec<Colour>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { style: Style::Auto, sensitivity: 1.0 }
+        Self { style: Style::Auto, sensitivity: 1.0, leave_out: Vec::new() }
     }
 }
 

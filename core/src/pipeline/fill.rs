@@ -32,7 +32,7 @@ const WHOLE: f64 = 0.5;
 pub const DOUBT: f64 = 0.5;
 
 /// Options of filling.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillOptions {
     /// How ink is found.
     pub lines: Options,

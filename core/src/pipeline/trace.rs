@@ -27,6 +27,15 @@ use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use std::sync::Arc;
 
+/// Options of tracing a film.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TraceOptions {
+    /// How lines are found.
+    pub lines: Options,
+    /// Whether the first frame was traced for itself by an earlier run. A document that has the strokes of that run says so itself.
+    pub keep_first: bool,
+}
+
 /// Traces the drawings of a document in `folder` and puts the strokes into its field `traced`. It runs on the caller's
 /// rayon pool; the result does not depend on the pool.
 ///
@@ -35,6 +44,10 @@ use std::sync::Arc;
 /// which is traced. From there strokes are carried from frame to frame, forwards and backwards. Frames with a drawing keep
 /// that drawing's strokes; each gets the number of the carried stroke that it lies on, or a new one. Frames between two
 /// drawings are [bound to both](between()).
+///
+/// If an earlier run traced the first frame for itself, and the first drawing is a later one, the first frame stays as it was, and the frames between
+/// are bound to it and to the drawing. So an edit of one traced drawing costs the lines before it nothing. An earlier run is known by its
+/// strokes in the field `traced`, which are all sure there, or by the [options](TraceOptions::keep_first).
 ///
 /// Frames that hold a drawing have its strokes to the last digit, unless the artist drew there.
 ///
@@ -52,7 +65,7 @@ pub fn trace(
     document: &mut Document,
     folder: &Path,
     range: Option<RangeInclusive<FrameNumber>>,
-    options: &Options,
+    options: &TraceOptions,
     memory: Option<&mut TraceMemory>,
     progress: &dyn Progress,
 ) -> Result<(), PipelineError> {
@@ -72,7 +85,8 @@ pub fn trace(
     let mut tracing = Tracing {
         frames: &holds,
         drawn,
-        options,
+        options: &options.lines,
+        keep_first: options.keep_first || is_own(&earlier, *range.start()),
         memory,
         hashes: BTreeMap::new(),
         progress,
@@ -93,6 +107,7 @@ struct Tracing<'a> {
     frames: &'a Holds<'a>,
     drawn: Vec<&'a Drawn>,
     options: &'a Options,
+    keep_first: bool,
     memory: Option<&'a mut TraceMemory>,
     /// The hashes of pictures that were looked at.
     hashes: BTreeMap<FrameNumber, Hash>,
@@ -131,9 +146,13 @@ impl Tracing<'_> {
         let new = self.next;
         let mut drawn = std::mem::take(&mut self.drawn).into_iter();
         let mut found = Found::new();
+        let keep =
+            |frame: FrameNumber| self.keep_first && self.frames.first(frame) != self.frames.first(*range.start());
         let mut place = match (before, drawn.as_slice(), behind) {
-            (Some(known), ..) | (None, [], Some(known)) => self.known(known),
-            (None, ..) => self.begun(*range.start(), drawn.next())?,
+            (Some(known), ..) => self.known(known),
+            (None, [first, ..], _) if !keep(first.frame) => self.begun(first.frame, drawn.next())?,
+            (None, [], Some(known)) if !keep(known.frame) => self.known(known),
+            (None, ..) => self.begun(*range.start(), None)?,
         };
         found.push((place.frame, place.drawn.clone()));
         let back = self.drawings(*range.start()..place.frame).into_iter().rev().collect();
@@ -341,6 +360,12 @@ impl Tracing<'_> {
     fn share(&self) -> f64 {
         SHARE + (1.0 - SHARE) * (self.done as f64 / self.all.max(1) as f64).min(1.0)
     }
+}
+
+/// Whether an earlier run traced a frame for itself.
+fn is_own(earlier: &[TracedDrawing], frame: FrameNumber) -> bool {
+    let sure = |drawing: &TracedDrawing| drawing.strokes.iter().all(|stroke| stroke.confidence.is_none());
+    earlier.iter().any(|drawing| drawing.frame == frame && !drawing.strokes.is_empty() && sure(drawing))
 }
 
 /// Traced drawings and, up to the frame `end`, those of the frames between: each holds the one before it.

@@ -1,7 +1,8 @@
 //! Ink: which pixels of a picture belong to drawn lines, and how certainly.
 //!
 //! 1. `paper` estimates the paper's colour behind each pixel. A pixel's *darkness* is the largest difference between the
-//!    paper and the pixel over the colour channels, so that coloured lines count as much as black ones.
+//!    paper and the pixel over the colour channels, so that coloured lines count as much as black ones. Pencils that a user
+//!    does not want are [left out](left_out) before.
 //! 2. The *level* that separates ink from paper is Otsu's (1979): the split of the darknesses into two groups that differ
 //!    most. A user moves it with one number, the [sensitivity](measure). It is not below a few times the grain, which is
 //!    measured where the paper is empty.
@@ -13,8 +14,11 @@
 
 pub mod discs;
 pub mod distance;
+mod left_out;
 mod paper;
 
+use crate::stroke::Options;
+use left_out::{Pencil, without};
 use paper::{BLOCK, Paper};
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use rototoon_base::scene::{Colour, Raster};
@@ -65,27 +69,34 @@ impl Ink {
     }
 }
 
-/// Finds the ink of a picture. A `sensitivity` of 1 takes the level as it is found; 2 halves it.
-pub fn measure(picture: &Raster<Colour>, sensitivity: f64) -> Ink {
+/// Whether lines of a colour can be left out. A grey cannot: it has no hue by which it could be told from the lines that are wanted.
+pub fn can_leave_out(colour: Colour) -> bool {
+    colour.iter().all(|value| value.is_finite()) && Pencil::new(colour, false).is_some()
+}
+
+/// Finds the ink of a picture. A sensitivity of 1 takes the level as it is found; 2 halves it. Pencils that are left out count for
+/// nothing.
+pub fn measure(picture: &Raster<Colour>, options: &Options) -> Ink {
     let (width, height) = (picture.width(), picture.height());
     if width == 0 || height == 0 {
         let (darkness, mask) = (Raster::new(0, 0, 0.0), Raster::new(0, 0, false));
         return Ink { depth: darkness.clone(), darkness, level: 1.0, darkest: 1.0, mask };
     }
     let paper = paper::estimate(picture);
-    let hard = darkness(picture, &paper);
+    let pencils: Vec<Pencil> = options.leave_out.iter().filter_map(|&own| Pencil::new(own, paper.dark)).collect();
+    let hard = darkness(picture, &paper, &pencils);
     drop(paper);
     let sharp = histogram(&hard);
     let darkness = blur(&hard, BLUR, Border::Replicate);
     drop(hard);
-    let level = (level(&darkness) / sensitivity.max(1e-3) as f32).clamp(1e-3, 10.0);
+    let level = (level(&darkness) / options.sensitivity.max(1e-3) as f32).clamp(1e-3, 10.0);
     let mut mask = hysteresis(&darkness, level);
     let area = (DOT * height as f64 / 540.0).clamp(4.0, 60.0) as usize;
     without_specks(&mut mask, area);
     Ink { depth: distance::inside(&mask), darkness, level, darkest: darkest(&sharp, level), mask }
 }
 
-fn darkness(picture: &Raster<Colour>, paper: &Paper) -> Raster<f32> {
+fn darkness(picture: &Raster<Colour>, paper: &Paper, pencils: &[Pencil]) -> Raster<f32> {
     let (width, height) = (picture.width(), picture.height());
     let mut out = Raster::new(width, height, 0.0f32);
     let blocks = &paper.blocks;
@@ -101,7 +112,11 @@ fn darkness(picture: &Raster<Colour>, paper: &Paper) -> Raster<f32> {
         for (x, out) in row.iter_mut().enumerate() {
             let (left, right, u) = place(x, line.len());
             let (behind, own) = (mixed(line[left], line[right], u), picture.get(x, y));
-            let channel = |c: usize| behind[c] - if paper.dark { 1.0 - own[c] } else { own[c] };
+            let mut own = if paper.dark { own.map(|value| 1.0 - value) } else { own };
+            if !pencils.is_empty() {
+                own = without(pencils, behind, own);
+            }
+            let channel = |c: usize| behind[c] - own[c];
             let value = channel(0).max(channel(1)).max(channel(2));
             *out = if value.is_finite() { value.clamp(0.0, 1.0) } else { 0.0 };
         }

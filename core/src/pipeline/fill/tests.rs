@@ -344,6 +344,14 @@ fn the_share_that_is_done_never_falls() {
         fill(&mut film.document, film.folder.path(), None, &FillOptions::default(), shares).unwrap();
     });
     rises(&mut |shares| {
-        super::super::trace(&mut film.document, film.folder.path(), None, &Options::default(), None, shares).unwrap();
+        super::super::trace(
+            &mut film.document,
+            film.folder.path(),
+            None,
+            &super::super::TraceOptions::default(),
+            None,
+            shares,
+        )
+        .unwrap();
     });
 }

@@ -118,7 +118,10 @@ impl Key {
         };
         let mut key = Self(Hasher::new());
         key.0.update(kind.as_bytes());
-        key.count(style).number(options.sensitivity);
+        key.count(style).number(options.sensitivity).count(options.leave_out.len());
+        options.leave_out.iter().flatten().for_each(|&value| {
+            key.number(f64::from(value));
+        });
         key
     }
 
@@ -224,6 +227,7 @@ mod tests {
             Key::new("other", &Options::default()).hash(),
             Key::new("span", &Options { sensitivity: 2.0, ..Options::default() }).hash(),
             Key::new("span", &Options { style: Style::Rough, ..Options::default() }).hash(),
+            Key::new("span", &Options { leave_out: vec![[0.6, 0.8, 1.0]], ..Options::default() }).hash(),
             key(&|key| {
                 key.strokes(std::slice::from_ref(&stroke));
             }),

@@ -1,6 +1,6 @@
 //! After an edit, tracing with a memory gives what tracing anew gives, and works only where the edit matters.
 
-use super::{Drawn, Holds, TraceMemory, Tracing, beside, looked_at};
+use super::{Drawn, Holds, TraceMemory, Tracing, beside, is_own, looked_at};
 use crate::geometry::Point;
 use crate::lines::Options;
 use crate::project::drawings::DrawnStroke;
@@ -99,6 +99,7 @@ fn of(
         frames,
         drawn: drawings.iter().filter(|drawing| range.contains(&drawing.frame)).collect(),
         options: &Options::default(),
+        keep_first: is_own(earlier, *range.start()),
         memory,
         hashes: BTreeMap::new(),
         progress: &Silent,
@@ -263,4 +264,26 @@ fn stages_give_what_one_run_gives_where_drawings_are_held() {
         let second = on_twos(end + 1..=LAST, &[], &first);
         assert_eq!([first, second].concat(), whole, "cut behind frame {end}");
     }
+}
+
+#[test]
+fn an_edit_of_a_later_drawing_leaves_the_first_frame_as_it_was_traced() {
+    let before = traced(&[], None);
+    let mut edited = drawn(5, 0.0);
+    // The artist deletes the first bar on frame 5, and the third one was never drawn there.
+    edited.strokes.remove(0);
+    for earlier in [before.clone(), before[..1].to_vec()] {
+        let found = within(0..=LAST, std::slice::from_ref(&edited), &earlier, None);
+        let lines = |drawing: &TracedDrawing| -> Vec<Vec<Point>> {
+            drawing.strokes.iter().map(|stroke| stroke.points.clone()).collect()
+        };
+        assert_eq!(lines(&found[0]), lines(&before[0]), "the first frame");
+        assert!(found[0].strokes.iter().all(|stroke| stroke.confidence.is_none()));
+        assert_eq!(lines(&found[5]), [edited.strokes[0].points.clone()], "what was deleted does not come back");
+        let second = found[0].strokes.iter().find(|stroke| stroke.points[0].y > 40.0).unwrap().track;
+        assert_eq!(tracks(&found)[5], [second], "the drawing has the number of the first frame");
+    }
+    // Nothing was traced before, so the drawing is the first one.
+    let anew = within(0..=LAST, &[edited], &[], None);
+    assert!(anew[0].strokes.iter().any(|stroke| stroke.confidence.is_some()));
 }

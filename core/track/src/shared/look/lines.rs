@@ -15,6 +15,7 @@
 use rayon::prelude::{IndexedParallelIterator, ParallelIterator, ParallelSliceMut};
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::gaussian::{Border, blur};
+use rototoon_lines::Options;
 use rototoon_lines::ink::{Ink, measure};
 
 /// Share of the ink's pixels that are not darker than a strong line.
@@ -30,7 +31,7 @@ const HUE_SPREAD: f32 = 1.5;
 pub fn look(picture: &Raster<Colour>) -> Raster<Colour> {
     let (width, height) = (picture.width(), picture.height());
     let scale = crate::shared::features::working_scale(height);
-    let found = measure(picture, 1.0);
+    let found = measure(picture, &Options::default());
     let ink = strengths(&found);
     let hue = hues(picture, &found, &ink, HUE_BLUR * scale);
     let mut look = Raster::new(width, height, [0.0; 3]);
