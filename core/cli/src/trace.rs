@@ -46,6 +46,7 @@ pub fn command() -> Command {
         .arg(
             Arg::new("keep-first")
                 .long("keep-first")
+                .value_name("WHETHER")
                 .help(
                     "The first frame was traced for itself before, and stays so. Then the frames up to the document's first drawing are bound to both. \
                      A document with strokes of that run says so itself",
