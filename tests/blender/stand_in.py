@@ -44,6 +44,7 @@ class Traced:
     widths: np.ndarray
     confidence: np.ndarray
     fills: np.ndarray
+    fill_colours: np.ndarray
 
 
 LINES = [[[20.0, 20.0], [40.0, 20.0], [60.0, 22.0]], [[30.0, 40.0], [50.0, 50.0], [70.0, 40.0], [50.0, 30.0]]]

@@ -3,15 +3,15 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x377deb63769aa144
+HEADER_HASH = 0xa0007baa00c27fea
 
 ROTOTOON_ABI_VERSION = 1
-PAIR = 0
-SPLIT = 1
-JOINED = 2
-VANISHED = 3
-APPEARED = 4
-CHAINED = 5
+ROTOTOON_PAIR = 0
+ROTOTOON_SPLIT = 1
+ROTOTOON_JOINED = 2
+ROTOTOON_VANISHED = 3
+ROTOTOON_APPEARED = 4
+ROTOTOON_CHAINED = 5
 ROTOTOON_STATUS_OK = 0
 ROTOTOON_STATUS_ERROR = 1
 ROTOTOON_STATUS_CANCELLED = 2
@@ -654,6 +654,13 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_traced_fill_colours.restype = ctypes.c_int32
+    library.rototoon_traced_fill_colours.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
