@@ -85,7 +85,9 @@ impl<'a> Stage<'a> {
         let last = features.len() - 1;
         let models = models.unwrap_or_else(|| {
             let model = |key: usize| model(job, key, &features[key * last], (scale, width), kit.mechanisms);
-            Arc::new([model(0), model(1)])
+            let mut pair = [model(0), model(1)];
+            Texture::weigh(&mut pair.each_mut().map(|model| &mut model.texture));
+            Arc::new(pair)
         });
         let anchors = |of: fn(&Correction) -> Correction| anchors(job, &drawings, &models, scale, of);
         let (anchors, pins) = (anchors(Correction::clone), anchors(Correction::pins_only));

@@ -10,4 +10,5 @@ mod progress;
 mod remembered;
 mod rotoscope;
 mod scene;
+mod slivers;
 mod wobble;

@@ -284,7 +284,7 @@ fn sample_costs(c: &Contender) -> Costs {
     let of = |h: &Hypothesis| {
         let texture = &c.models[h.model].texture;
         let total: f32 = texture.measured().iter().map(|t| t.weight).sum();
-        let share = 1.0 / total.max(1e-6);
+        let share = texture.trust() as f32 / total.max(1e-6);
         let hiding =
             texture.measured().iter().zip(&h.differences).map(|(t, d)| t.weight * share * (HIDDEN - d)).collect();
         let bending = texture.bending(&h.pose.nodes);

@@ -3,6 +3,11 @@
 //! The energy is the weighted mean over the samples of the squared colour difference, limited to [`WORST`], plus a
 //! little for bending. A sample outside the part shows background, which may change between the frames; its cost has
 //! special rules (see [`UNSEEN`] and the cost of a texel).
+//!
+//! **Slivers.** An artist draws a part on where a nearer one hides it. What is left of its look at such a key is a few
+//! samples, which fit nearly everywhere, so a mean over them alone would beat every right pose of a key that shows the
+//! part. So where the other key shows more, the mean has the weight t, the share of the part's inside that is seen at the key, relative to
+//! [`ENOUGH`], at most 1. What is missing costs [`WORST`]. A key of which nothing is seen says where the part is on its frame, and nothing about its look.
 
 use super::mesh::{Binding, Mesh};
 use super::shape;
@@ -34,6 +39,12 @@ const ALIKE: f32 = 0.02;
 pub const CONTRAST: f32 = 0.02;
 /// Weight of the shape energy relative to the mean colour difference, and the upper limit of the shape energy.
 const SHAPE: (f64, f64) = (0.02, 2.0);
+/// Share of a part that must be seen at its key for the key to tell its look, and the same relative to the key that shows most of it: of
+/// a ring behind a disc no key shows more than its rim.
+const ENOUGH: f64 = 0.1;
+const ENOUGH_OF_FULLEST: f64 = 0.2;
+/// Places across the larger side of a part at which is looked how much of it is seen.
+const LOOKS: f64 = 48.0;
 /// Level (index in [`LEVELS`]) whose samples measure the energy of a pose.
 const MEASURED_LEVEL: usize = 1;
 
@@ -149,13 +160,18 @@ pub struct Texture {
     pub texels: [Vec<Texel>; 3],
     /// Width of the picture in working pixels. Places outside the picture are not visible.
     width: f64,
+    /// Share of the part that is seen at the key.
+    shown: f64,
+    /// Weight of the look in the energy.
+    trust: f64,
 }
 
 impl Texture {
     /// Samples the key's picture over the lattice, except where a nearer part hides it or the picture ends.
     pub fn new(mesh: Mesh, key: &Features, cover: &Cover, width: f64) -> Self {
         let texels = std::array::from_fn(|level| sample_level(&mesh, key, cover, width, level));
-        Self { mesh, texels, width }
+        let shown = shown(&mesh, cover, width);
+        Self { mesh, texels, width, shown, trust: 1.0 }
     }
 
     /// Forgets the difference between part and background, for measurements without it: samples outside have the same
@@ -186,7 +202,21 @@ impl Texture {
             || self.look::<STEP>(picture, nodes, seen),
         );
         let look = if weights > 0.0 { sum / weights } else { f64::from(WORST) };
-        look + self.bending(nodes)
+        self.trust * look + (1.0 - self.trust) * f64::from(WORST) + self.bending(nodes)
+    }
+
+    /// Makes the looks of a part at several keys count by how much of it each of them shows.
+    pub fn weigh(looks: &mut [&mut Self]) {
+        let fullest = looks.iter().map(|look| look.shown).fold(0.0, f64::max);
+        let enough = ENOUGH.min(ENOUGH_OF_FULLEST * fullest);
+        for look in looks.iter_mut().filter(|look| look.shown < enough) {
+            look.trust = look.shown / enough;
+        }
+    }
+
+    /// Weight of the look in the energy: 1, or less if the key shows next to nothing of the part and another one more.
+    pub fn trust(&self) -> f64 {
+        self.trust
     }
 
     /// Sum of the weighted costs of every `STEP`-th measuring sample of each cell, and the sum of their weights.
@@ -273,6 +303,29 @@ impl Texel {
     }
 }
 
+/// Share of a part that is seen at its key: in the picture, and not under a nearer part.
+fn shown(mesh: &Mesh, cover: &Cover, width: f64) -> f64 {
+    let (low, high) = mesh.bounds();
+    let step = ((high - low).max_element() / LOOKS).max(1.0);
+    let count = |length: f64| (length / step).ceil() as usize;
+    // By whether a place is inside of a closed contour: all places, and those that are seen. A line has no inside.
+    let mut counts = [[0usize; 2]; 2];
+    for j in 0..count(high.y - low.y) {
+        for i in 0..count(high.x - low.x) {
+            let p = low + Point::new(i as f64 + 0.5, j as f64 + 0.5) * step;
+            let (belongs, inside) = mesh.region(p);
+            if belongs {
+                let [all, seen] = &mut counts[usize::from(inside)];
+                *all += 1;
+                *seen += usize::from(in_picture(p, width) && !cover.hides(p));
+            }
+        }
+    }
+    let [band, inside] = counts;
+    let [all, seen] = if inside[0] > 0 { inside } else { band };
+    if all == 0 { 1.0 } else { seen as f64 / all as f64 }
+}
+
 fn sample_level(mesh: &Mesh, key: &Features, cover: &Cover, width: f64, level: usize) -> Vec<Texel> {
     let (pixel, unknowns) = (LEVELS[level] as f64, mesh.unknowns(level));
     let wanted = if level == 0 { (mesh.area() / FINE_SAMPLES).sqrt().max(pixel) } else { 0.75 * pixel };
@@ -352,5 +405,38 @@ mod tests {
         assert!(mesh.across(Point::new(30.0, 6.0)).unwrap().distance(Point::new(30.0, 14.0)) < 1e-9);
         assert_eq!(Mesh::new(&square, false).across(Point::new(30.0, 6.0)), None, "a line has no inside");
         assert_eq!(mesh.across(Point::new(30.0, -35.0)), None, "the mirror place is beyond the other side");
+    }
+
+    #[test]
+    fn a_key_that_shows_a_sliver_says_little_unless_no_key_shows_more() {
+        let square = |x: f64, y: f64, side: f64| {
+            [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(dx, dy)| Point::new(x + dx, y + dy)).to_vec()
+        };
+        let inside = |at: usize| (100..180).contains(&at);
+        let picture =
+            Features::new(&Raster::from_fn(
+                400,
+                540,
+                |x, y| {
+                    if inside(x) && inside(y) { [0.8, 0.3, 0.2] } else { [0.9; 3] }
+                },
+            ));
+        let look = |hidden: &[Vec<Point>]| {
+            let mesh = Mesh::new(&square(100.0, 100.0, 80.0), true);
+            Texture::new(mesh, &picture, &Cover::new(hidden, 400.0), 400.0)
+        };
+        let nearer = [square(104.0, 90.0, 100.0)];
+        let (mut sliver, mut whole) = (look(&nearer), look(&[]));
+        let along: Vec<Point> = sliver.mesh.rest.iter().map(|p| *p + Point::new(0.0, 20.0)).collect();
+        let aside: Vec<Point> = whole.mesh.rest.iter().map(|p| *p + Point::new(6.0, 0.0)).collect();
+        let (wrong, rough) =
+            (|look: &Texture| look.energy(&picture, &along), |look: &Texture| look.energy(&picture, &aside));
+        assert!(wrong(&sliver) < 2.0 * rough(&whole), "on its own it fits along the edge");
+        Texture::weigh(&mut [&mut sliver, &mut whole]);
+        assert!(sliver.trust() < 0.7 && whole.trust() == 1.0);
+        assert!(wrong(&sliver) > 2.0 * rough(&whole));
+        let (mut one, mut other) = (look(&nearer), look(&nearer));
+        Texture::weigh(&mut [&mut one, &mut other]);
+        assert_eq!([one.trust(), other.trust()], [1.0; 2], "no key shows more");
     }
 }
