@@ -49,13 +49,15 @@ pub enum Mechanism {
     Folds,
     /// What is behind a neck of a contour is tried turned about it.
     Branches,
+    /// Frames that show one drawing of a part over a background that moves take one contour.
+    Holds,
     /// Parts without corrections keep their tracks, unless corrections of other parts make them clearly surer.
     Untouched,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 21] = [
+    pub const ALL: [(Self, &str); 22] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -76,6 +78,7 @@ impl Mechanism {
         (Self::Figure, "figure"),
         (Self::Folds, "folds"),
         (Self::Branches, "branches"),
+        (Self::Holds, "holds"),
         (Self::Untouched, "untouched"),
     ];
 

@@ -21,6 +21,8 @@
 //!    ([`untouched`](mod@untouched)).
 //! 6. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
+//! 7. **Holds.** Frames that show one drawing of a part over a background that moves take one contour ([`holds`]).
+//!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
 //! change the pools of other parts. Stretches without a change keep their choices ([`chosen`]), and drawings without one what
 //! was looked for there ([`mend`](mod@mend)). The tracks of other parts are computed again only if the choice changes them.
@@ -42,6 +44,7 @@ mod figures;
 mod finer;
 mod finish;
 mod fold;
+mod holds;
 pub mod joint;
 pub mod lattice;
 pub mod mechanisms;
@@ -152,6 +155,9 @@ impl SceneSolver for Rototoon {
             let result = outward.run(self.kit(&looks, &rest), scene, &mut tracking);
             self.outward = outward;
             result?;
+        }
+        if self.mechanisms.has(Mechanism::Holds) {
+            holds::unite(self.kit(&looks, progress), scene, &mut tracking)?;
         }
         Ok(tracking)
     }

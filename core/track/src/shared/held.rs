@@ -66,7 +66,7 @@ pub fn same_drawing(a: &Features, b: &Features) -> bool {
         return true;
     }
     let difference = Difference::new(a, b);
-    difference.strong <= MANY && difference.measure().is_noise()
+    difference.strong <= MANY && difference.measure(LEAST_INK).is_noise()
 }
 
 /// The drawings of frames, which are in their order: the first and the last frame of each. They are those that the default tracker
@@ -132,7 +132,7 @@ pub fn began(
 }
 
 /// The difference of two pictures, as sums over the channels of products by pixel.
-struct Difference {
+pub(super) struct Difference {
     width: usize,
     height: usize,
     /// Squared slopes along x, along y and their product; slope times difference along x and along y; squared difference.
@@ -166,10 +166,16 @@ impl Difference {
                 products.iter_mut().zip(sums).for_each(|(plane, sum)| plane.push(sum));
             }
         }
-        Self { width, height, products, grain: variance(&mut sizes), strong }
+        Self { strong, ..Self::of((width, height), products, &mut sizes) }
     }
 
-    fn measure(&self) -> Measured {
+    /// From the products, and the sizes of the changes in units of a stored colour. Strong changes are not counted.
+    pub(super) fn of((width, height): (usize, usize), products: [Vec<f32>; 6], sizes: &mut [u16]) -> Self {
+        Self { width, height, products, grain: variance(sizes), strong: 0 }
+    }
+
+    /// `least` is the number of pixels of ink that are counted at least.
+    pub(super) fn measure(&self, least: f64) -> Measured {
         let wide = self.products.each_ref().map(|plane| self.summed(plane, WIDE));
         let area = ((2 * WIDE + 1) * (2 * WIDE + 1)) as f64;
         let (mut moved, mut rest, mut ink) = (0.0, 0.0, 0.0f64);
@@ -190,7 +196,7 @@ impl Difference {
         let narrow = self.summed(&self.products[5], NARROW).into_iter().fold(0.0, f32::max);
         let share = ((2 * NARROW + 1) * (2 * NARROW + 1)) as f64;
         let change = f64::from(narrow) - 3.0 * share * self.grain;
-        let ink = ink.max(LEAST_INK);
+        let ink = ink.max(least);
         Measured { moved: moved / area / ink, change, rest: (rest / area - change).max(0.0) / ink }
     }
 
@@ -217,7 +223,7 @@ fn windows(values: &[f32], length: usize, stride: usize, radius: usize) -> Vec<f
 }
 
 /// Variance of noise from the sizes of differences: their median is 0.6745 σ. Sizes are in units of a stored colour.
-fn variance(sizes: &mut [u16]) -> f64 {
+pub(super) fn variance(sizes: &mut [u16]) -> f64 {
     if sizes.is_empty() {
         return 0.0;
     }
@@ -228,14 +234,14 @@ fn variance(sizes: &mut [u16]) -> f64 {
 
 /// M, B and U of the module's text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Measured {
+pub(super) struct Measured {
     moved: f64,
     change: f64,
     rest: f64,
 }
 
 impl Measured {
-    fn is_noise(self) -> bool {
+    pub(super) fn is_noise(self) -> bool {
         let bound = |[least, slope, most]: [f64; 3]| (least + slope * self.rest).min(most);
         self.moved <= bound(MOVED) && self.change <= bound(CHANGED)
     }

@@ -24,3 +24,4 @@ pub mod part_by_part;
 pub mod sought;
 pub mod store;
 pub mod weakest;
+pub mod within;

@@ -3,6 +3,7 @@
 
 mod borders;
 mod branches;
+mod holds;
 mod limbs;
 mod memory;
 mod outward;

@@ -1,0 +1,210 @@
+//! Gives a part one contour on all frames that show one drawing of it, where the pictures as a whole are others.
+//!
+//! **Why.** Frames that show one drawing are tracked once ([`drawings`](crate::shared::drawings)). But over a background that pans on ones no two
+//! pictures are the same, so a drawing that is held on twos is tracked twice, with two contours. Mattes boil then, and an artist corrects twice.
+//!
+//! **How.** When all parts are tracked, each part is compared from frame to frame inside its contour ([`within`](crate::shared::within)), where it stands and
+//! where the picture around the parts goes (the *pan*). Two frames are held for the part if its surer
+//! contour, or the one that the artist made, encloses the same picture on both: then what is known of this contour on its own frame is just as true on the other
+//! one. So the other frame takes it, moved with the picture, with its confidence. Frames held one after the other take the contour of the artist that
+//! is nearest in time, or else the surest one, if it encloses the same picture there too. So slow movement does not add up.
+//!
+//! Contours that the artist made stay.
+//!
+//! What a part takes depends on its own contours and on the pictures alone. So a correction of another part changes nothing here. The pan is rounded to
+//! whole working pixels for the same reason: it depends on where the parts are.
+//!
+//! **Limits.** The contours are known only when all is tracked, so the search for poses gains nothing. A part that is held behind one that moves is not found. A part that stands still and turns about itself without
+//! any drawn sign of it is held.
+
+use super::confidence::HELD;
+use super::stage::Kit;
+use crate::contract::error::TrackError;
+use crate::contract::tracking::{PartTrack, Tracking};
+use crate::shared::features::{Features, LEVELS, working_scale};
+use crate::shared::store::FLOW_LEVEL;
+use crate::shared::within::Region;
+use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::scene::{FrameNumber, Scene};
+use std::sync::Arc;
+
+/// Share of the places whose flow must be as near to the pan, in working pixels.
+const MOST: f64 = 0.6;
+const WITH_IT: f64 = 1.5;
+/// Of each so many columns and rows of the flow one is looked at, and so many places say something.
+const EACH: usize = 2;
+const FEW: usize = 64;
+
+/// How a part's contour on a frame was made: the higher, the more it is worth.
+type Rank = (u8, f64);
+
+/// Contours and confidences that frames take from others.
+type Taken = Vec<(FrameNumber, Vec<Point>, Vec<f64>)>;
+
+struct View<'a> {
+    kit: Kit<'a>,
+    scene: &'a Scene,
+    tracking: &'a Tracking,
+    /// Pixels of the picture per working pixel.
+    scale: f64,
+}
+
+/// Gives each closed part of a tracked scene one contour on the frames that show one drawing of it.
+///
+/// # Errors
+///
+/// The error of a picture that cannot be read, or the cancellation by the listener of `kit`.
+pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<(), TrackError> {
+    let scale = working_scale(scene.footage.height);
+    let view = View { kit, scene, tracking, scale };
+    let parts: Vec<usize> = (0..scene.parts.len()).filter(|&p| scene.parts[p].closed).collect();
+    let taken: Vec<Result<Taken, TrackError>> = parts.par_iter().with_max_len(1).map(|&p| view.taken(p)).collect();
+    let taken = taken.into_iter().collect::<Result<Vec<Taken>, TrackError>>()?;
+    for (p, taken) in parts.into_iter().zip(taken) {
+        let PartTrack { tracks, confidence, .. } = &mut tracking.parts[p];
+        for (frame, points, sure) in taken {
+            tracks.insert(frame, points);
+            confidence.insert(frame, sure);
+        }
+    }
+    Ok(())
+}
+
+impl View<'_> {
+    /// The contours that frames of a part take from others.
+    fn taken(&self, p: usize) -> Result<Taken, TrackError> {
+        let (part, track) = (&self.scene.parts[p], &self.tracking.parts[p]);
+        let mut taken = Taken::new();
+        let mut run: Vec<(FrameNumber, Point)> = Vec::new();
+        for &frame in track.tracks.keys().filter(|frame| !part.is_absent(**frame)) {
+            let next = match run.last() {
+                Some(&(before, at)) if before + 1 == frame => {
+                    self.kit.progress.report("Tracking", 1.0)?;
+                    self.shift(p, before, frame)?.map(|shift| at + shift)
+                }
+                _ => None,
+            };
+            if next.is_none() {
+                self.settle(p, &run, &mut taken)?;
+                run.clear();
+            }
+            run.push((frame, next.unwrap_or_default()));
+        }
+        self.settle(p, &run, &mut taken)?;
+        Ok(taken)
+    }
+
+    /// What the frames of a run of held ones, each with the part's place there, take from each other.
+    fn settle(&self, p: usize, run: &[(FrameNumber, Point)], taken: &mut Taken) -> Result<(), TrackError> {
+        let track = &self.tracking.parts[p];
+        let free = run.iter().filter(|(frame, _)| self.rank(p, *frame).0 == 0);
+        for &(frame, at) in free.filter(|_| run.len() > 1) {
+            let nearness = |from: FrameNumber| match self.rank(p, from) {
+                (0, sure) => (0, sure, -from),
+                (made, _) => (made.min(1), -f64::from((from - frame).abs()), -from),
+            };
+            let best = run.iter().max_by(|a, b| {
+                let (a, b) = (nearness(a.0), nearness(b.0));
+                a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2))
+            });
+            let is_other = |from: FrameNumber| from != frame && track.tracks[&from] != track.tracks[&frame];
+            let Some(&(from, there)) = best.filter(|best| is_other(best.0)) else { continue };
+            let Some(shift) = self.same(p, (from, frame), at - there)? else { continue };
+            let points: Vec<Point> = track.tracks[&from].iter().map(|&q| q + shift * self.scale).collect();
+            let sure = track.confidence.get(&from).cloned().unwrap_or_default();
+            taken.push((frame, points, sure.into_iter().map(|sure| sure.min(HELD)).collect()));
+        }
+        Ok(())
+    }
+
+    /// How far a part goes from a frame to the next one if both show one drawing of it. `None` if they do not.
+    fn shift(&self, p: usize, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
+        let tracks = &self.tracking.parts[p].tracks;
+        if tracks[&before] == tracks[&frame] {
+            return Ok(Some(Point::ZERO));
+        }
+        // Of one drawing in the same pictures, contours are others only where the artist made them so.
+        if self.kit.held(&[before, frame], &|| Ok(()))?.contains(&true) {
+            return Ok(None);
+        }
+        let [a, b] = [before, frame].map(|frame| self.rank(p, frame));
+        let forwards = a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).is_ge();
+        let pair = if forwards { (before, frame) } else { (frame, before) };
+        let sign = if forwards { 1.0 } else { -1.0 };
+        if let Some(shift) = self.same(p, pair, Point::ZERO)? {
+            return Ok(Some(shift * sign));
+        }
+        let Some(pan) = self.pan(before, frame)? else { return Ok(None) };
+        Ok(self.same(p, pair, pan * sign)?.map(|shift| shift * sign))
+    }
+
+    /// Where the picture around the parts goes from a frame to the next one, in working pixels: the median of the flow. `None` if
+    /// it stays, or does not go as one.
+    fn pan(&self, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
+        let flow = self.kit.store.flow(self.kit.frames, before, frame)?;
+        let pixel = LEVELS[FLOW_LEVEL] as f64;
+        let tracked = |track: &PartTrack| track.tracks.get(&before).map(|points| self.working(points));
+        let contours: Vec<Vec<Point>> = self.tracking.parts.iter().filter_map(tracked).collect();
+        let mut along = [Vec::new(), Vec::new()];
+        for y in (0..flow.height()).step_by(EACH) {
+            for x in (0..flow.width()).step_by(EACH) {
+                let p = Point::new(x as f64 + 0.5, y as f64 + 0.5) * pixel;
+                if !contours.iter().any(|contour| polygon::contains(contour, p)) {
+                    let [u, v] = flow.get(x, y);
+                    along[0].push(u);
+                    along[1].push(v);
+                }
+            }
+        }
+        let median = |values: &mut Vec<f32>| {
+            let middle = values.len() / 2;
+            f64::from(*values.select_nth_unstable_by(middle, f32::total_cmp).1) * pixel
+        };
+        let [across, down] = &mut along;
+        if across.len() < FEW {
+            return Ok(None);
+        }
+        let flows: Vec<Point> =
+            across.iter().zip(&*down).map(|(&u, &v)| Point::new(f64::from(u), f64::from(v)) * pixel).collect();
+        let pan = Point::new(median(across), median(down));
+        let with_it = flows.iter().filter(|flow| flow.distance(pan) <= WITH_IT).count();
+        let pan = pan.round();
+        let is_pan = pan != Point::ZERO && with_it as f64 >= MOST * flows.len() as f64;
+        Ok(is_pan.then_some(pan))
+    }
+
+    /// How far the picture goes within a part's contour from the first frame to the second one, if it is the same there. It is looked
+    /// for at a shift, which is made exact unless it is none.
+    fn same(
+        &self,
+        p: usize,
+        (from, to): (FrameNumber, FrameNumber),
+        shift: Point,
+    ) -> Result<Option<Point>, TrackError> {
+        let contour = self.working(&self.tracking.parts[p].tracks[&from]);
+        let [a, b] = [self.kit.colours(from)?, self.kit.colours(to)?];
+        Ok(Region::within(&contour, &a).and_then(|region| held(&region, [&a, &b], shift)))
+    }
+
+    fn working(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|&p| p / self.scale).collect()
+    }
+
+    /// Keys come before corrected contours, and these before others, which count by their confidence.
+    fn rank(&self, p: usize, frame: FrameNumber) -> Rank {
+        let part = &self.scene.parts[p];
+        if part.keys.contains_key(&frame) {
+            return (2, 1.0);
+        }
+        let corrected = part.pins.contains_key(&frame) || part.centers.contains_key(&frame);
+        let sure = self.tracking.parts[p].confidence.get(&frame).map_or(&[][..], Vec::as_slice);
+        (u8::from(corrected), sure.iter().sum::<f64>() / sure.len().max(1) as f64)
+    }
+}
+
+/// The exact shift at which a region shows the same in both pictures.
+fn held(region: &Region, [a, b]: [&Arc<Features>; 2], shift: Point) -> Option<Point> {
+    let shift = if shift == Point::ZERO { shift } else { region.settled(a, b, shift)? };
+    region.same(a, b, shift).then_some(shift)
+}
