@@ -84,7 +84,8 @@ pub fn confidence(part: &Part) -> BTreeMap<FrameNumber, f64> {
     tracked.filter_map(|(&frame, points)| Some((frame, mean(points)?))).collect()
 }
 
-fn mean(points: &[f64]) -> Option<f64> {
+/// The mean confidence of the points of a contour. `None` if it has none.
+pub fn mean(points: &[f64]) -> Option<f64> {
     (!points.is_empty()).then(|| points.iter().sum::<f64>() / points.len() as f64)
 }
 

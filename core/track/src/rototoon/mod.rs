@@ -72,6 +72,7 @@ use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
+use crate::shared::twins;
 use figures::Figures;
 use finer::{Broad, Film, Found};
 use finish::{Finish, Finished, finish};
@@ -159,6 +160,7 @@ impl SceneSolver for Rototoon {
         if self.mechanisms.has(Mechanism::Holds) {
             holds::unite(self.kit(&looks, progress), scene, &mut tracking)?;
         }
+        twins::doubt(scene, &mut tracking.parts);
         Ok(tracking)
     }
 

@@ -23,5 +23,6 @@ pub mod look;
 pub mod part_by_part;
 pub mod sought;
 pub mod store;
+pub mod twins;
 pub mod weakest;
 pub mod within;

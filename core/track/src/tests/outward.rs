@@ -185,3 +185,29 @@ fn odd_parts_with_one_key_give_finite_tracks() {
         assert!(given.windows(2).all(|pair| pair[1] == pair[0] + 1), "{}: no gaps", part.name);
     }
 }
+
+/// Two eyes of one look on a head that turns: one is seen until frame 3, the other one from frame 2 on.
+fn eyes() -> Drawn {
+    let eye = |motion: fn(f64) -> (Point, f64)| Shape {
+        rest: (0..8).map(|k| Point::from_angle(f64::from(k) * 0.785) * Point::new(11.0, 14.0)).collect(),
+        colour: [0.2, 0.4, 0.7],
+        motion,
+    };
+    Drawn(vec![
+        eye(|t| (Point::new(if t < 4.0 { 120.0 + 6.0 * t } else { -300.0 }, 90.0), 0.0)),
+        eye(|t| (Point::new(if t > 1.0 { 50.0 + 6.0 * t } else { -300.0 }, 90.0), 0.0)),
+    ])
+}
+
+#[test]
+fn a_part_that_disappears_does_not_go_over_to_its_twin() {
+    let drawn = eyes();
+    let parts = vec![single(&drawn.0[0], "right", 0.0, 0), single(&drawn.0[1], "left", 1.0, LAST)];
+    let tracking = track(&drawn, &drawn.scene(parts));
+    for (found, shape, own) in [(&tracking.parts[0], &drawn.0[0], 0..4), (&tracking.parts[1], &drawn.0[1], 2..7)] {
+        assert_eq!(frames(found), own.collect::<Vec<_>>());
+        assert!(worst(shape, found) < 2.0, "{}", worst(shape, found));
+    }
+    assert_eq!(tracking.parts[0].wants_key(), [4]);
+    assert_eq!(tracking.parts[1].wants_key(), [1]);
+}

@@ -4,6 +4,7 @@
 //!    hypotheses there is carried on too: two chains find more than one, at twice the cost.
 //! 2. If all of these fit much worse than usual, or the part is not trusted, the key's appearance is searched in the
 //!    complete picture.
+//!    So it is where they are on the place of another part, and these are dropped if anything else is found.
 //! 3. If the artist corrected the drawing, every hypothesis is moved to the corrections.
 //! 4. The path of least cost over the last drawings is chosen again. It shows whether the part is still trusted.
 //!
@@ -27,8 +28,10 @@ use crate::shared::cuts::is_cut;
 use crate::shared::features::Features;
 use crate::shared::held::same_drawing;
 use crate::shared::sought::Sought;
+use crate::shared::twins::on_one_place;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::FrameNumber;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Number of drawings over which the path is chosen while the arm grows.
@@ -58,6 +61,8 @@ pub struct Seen {
     pub features: Arc<Features>,
     /// The cover: where the part is hidden.
     pub cover: Cover,
+    /// Contours on whose place the part cannot be, in working pixels.
+    taken: Vec<Vec<Point>>,
     /// The artist's correction of the drawing.
     pub correction: Option<Correction>,
     /// The hypotheses; a single one on the key's drawing.
@@ -189,17 +194,19 @@ impl Growing<'_> {
             correction = correction.or(own);
             far = *frame;
         }
-        let contours = job.occluders.get(&near).map_or(&[][..], Vec::as_slice);
-        let working: Vec<Vec<Point>> =
-            contours.iter().map(|c| c.iter().map(|&p| p / self.ground.scale).collect()).collect();
+        let working = |of: &BTreeMap<FrameNumber, Vec<Vec<Point>>>| -> Vec<Vec<Point>> {
+            let contours = of.get(&near).map_or(&[][..], Vec::as_slice);
+            contours.iter().map(|c| c.iter().map(|&p| p / self.ground.scale).collect()).collect()
+        };
         let mesh = &self.ground.model.texture.mesh;
         let anchors = correction.map_or_else(Anchors::default, |c| Anchors::new(mesh, c, self.ground.scale));
-        let cover = Cover::new(&working, self.ground.width);
+        let cover = Cover::new(&working(&job.occluders), self.ground.width);
         Ok(Some(Seen {
             near,
             far,
             features,
             cover,
+            taken: if correction.is_none() && !is_key { working(&job.taken) } else { Vec::new() },
             correction: correction.cloned(),
             pool: Vec::new(),
             dear: Vec::new(),
@@ -231,7 +238,8 @@ impl Growing<'_> {
         let mut pool = self.carried(seen)?;
         let carried = pool.len();
         let least = pool.iter().map(|h| h.pose.energy).fold(f64::INFINITY, f64::min);
-        if doubtful || least > WORSE.0 * self.usual_energy() + WORSE.1 {
+        let taken = pool.iter().any(|h| seen.is_taken(h));
+        if taken || doubtful || least > WORSE.0 * self.usual_energy() + WORSE.1 {
             for start in self.searched(seen)? {
                 let pose = model.polished(&seen.scenery(), &start);
                 let new = self.hypothesis(seen, pose);
@@ -244,7 +252,9 @@ impl Growing<'_> {
             return Ok(self.constrained(seen, &pool).into_iter().map(|h| (h, 0.0)).collect());
         }
         let price = |i: usize| if i < carried { 0.0 } else { JUMP };
-        Ok(pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect())
+        let priced: Vec<(Hypothesis, f64)> = pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect();
+        let (there, free): (Vec<_>, Vec<_>) = priced.into_iter().partition(|(h, _)| seen.is_taken(h));
+        Ok(if free.is_empty() { there } else { free })
     }
 
     /// Hypotheses carried from the drawing before.
@@ -360,7 +370,9 @@ impl Growing<'_> {
 
     fn sureness(&self, d: usize) -> Sureness {
         let seen = &self.drawings[d];
-        Sureness::of(self.ground.model, self.ground.rival, &seen.scenery(), &seen.pool[self.path[d]])
+        let chosen = &seen.pool[self.path[d]];
+        let sure = Sureness::of(self.ground.model, self.ground.rival, &seen.scenery(), chosen);
+        if seen.is_taken(chosen) { sure.untrusted() } else { sure }
     }
 
     /// Carries late findings back towards the key.
@@ -379,7 +391,7 @@ impl Growing<'_> {
             }
             let new = self.hypothesis(to, self.carry(&source, None, from, to)?);
             self.steps += 1;
-            if is_new(&to.pool, &new) {
+            if is_new(&to.pool, &new) && !to.is_taken(&new) {
                 fresh = (new.pose.energy < known.pose.energy).then(|| new.clone());
                 self.drawings[d - 1].pool.push(new);
                 self.drawings[d - 1].dear.push(0.0);
@@ -393,6 +405,11 @@ impl Seen {
     fn candidates(&self) -> Vec<Candidate<'_>> {
         let priced = self.pool.iter().zip(&self.dear);
         priced.map(|(h, dear)| Candidate { cost: h.pose.energy.max(0.0).sqrt() + dear, points: &h.points }).collect()
+    }
+
+    /// Whether a hypothesis is on the place of another part.
+    fn is_taken(&self, hypothesis: &Hypothesis) -> bool {
+        self.taken.iter().any(|contour| on_one_place(contour, &hypothesis.points))
     }
 
     /// The drawing as input for the key's model.

@@ -8,6 +8,7 @@
 //! - [`arm`]: one direction: hypotheses on each drawing, and the path through them
 //! - [`trust`]: how sure a point is with one key, and when a part is lost
 //! - `finish`: the track from the chosen poses
+//! - `apart`: parts that went to the place of another one are followed again
 //!
 //! The key is the only source for the part's appearance. Its lattice and its colours ([`super::lattice`]) are carried
 //! along ([`super::propagate`]) and always compared with the key, so nothing drifts. Where the fit becomes much worse
@@ -26,6 +27,7 @@
 //! **Limits.** Parts choose one by one, so only occlusion distinguishes equal limbs that cross. A part that turns its
 //! other side to the viewer is lost there; it needs a new key.
 
+mod apart;
 pub mod arm;
 mod finish;
 pub mod plan;
@@ -54,6 +56,8 @@ pub struct OutwardJob {
     pub corrections: BTreeMap<FrameNumber, Correction>,
     /// By frame: closed contours of the nearer parts, keyed or tracked.
     pub occluders: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
+    /// By frame: contours of other parts on whose place this part cannot be ([`twins`](crate::shared::twins)).
+    pub taken: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
     /// Size of the pictures in pixels.
     pub size: (usize, usize),
 }

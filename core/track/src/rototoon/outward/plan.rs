@@ -3,7 +3,10 @@
 //! A part's result depends on its key, its corrections, the pictures, and the places of nearer parts. So the parts go
 //! from the nearest to the farthest, and parts of the same depth run in parallel. A result is reused if its job is the
 //! same as before.
+//!
+//! Where parts came to the place of others ([`apart`](super::apart)), all are followed a second time, without these places.
 
+use super::apart::{Came, came};
 use super::finish::track;
 use super::{OutwardJob, OutwardTrack};
 use crate::contract::error::TrackError;
@@ -11,6 +14,7 @@ use crate::contract::job::{Correction, SpanSummary, Termination};
 use crate::contract::tracking::{JobReport, PartTrack, Tracking};
 use crate::rototoon::mechanisms::Mechanisms;
 use crate::rototoon::stage::Kit;
+use crate::shared::twins::on_one_place;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Cancelled, FrameNumber, Part, Progress, Scene, Span};
@@ -21,7 +25,12 @@ use std::sync::Mutex;
 #[derive(Default)]
 pub struct Memory {
     known: BTreeMap<String, (OutwardJob, OutwardTrack)>,
+    /// The results of the second run, if there was one ([`apart`](super::apart)).
+    again: BTreeMap<String, (OutwardJob, OutwardTrack)>,
 }
+
+/// By part and frame: contours of other parts on whose place it cannot be.
+type Taken = BTreeMap<usize, BTreeMap<FrameNumber, Vec<Vec<Point>>>>;
 
 /// Indices of the parts with exactly one key and at least one point.
 pub fn subjects(scene: &Scene) -> Vec<usize> {
@@ -40,18 +49,37 @@ impl Memory {
         let subjects = subjects(scene);
         let names: BTreeSet<&str> = subjects.iter().map(|&p| scene.parts[p].name.as_str()).collect();
         self.known.retain(|name, _| names.contains(name.as_str()));
+        self.again.retain(|name, _| names.contains(name.as_str()));
         let counter = Counter { listener: kit.progress, done: Mutex::new(0), all: subjects.len() };
-        for wave in waves(scene, &subjects) {
-            let jobs: Vec<(usize, OutwardJob)> = wave.iter().map(|&p| (p, job(scene, tracking, p))).collect();
+        self.follow(Kit { progress: &counter, ..kit }, scene, (&subjects, &Taken::new()), tracking, &counter)?;
+        let came = came(scene, tracking, &subjects);
+        if !came.is_empty() {
+            let taken = taken(tracking, &came);
+            self.follow(Kit { progress: &counter, ..kit }, scene, (&subjects, &taken), tracking, &counter)?;
+        }
+        tracking.jobs.sort_by_key(|job| (job.part, job.span));
+        Ok(())
+    }
+
+    /// Follows the subjects from the nearest to the farthest. What is `taken` makes a second run, which has a memory of its own.
+    fn follow(
+        &mut self,
+        kit: Kit,
+        scene: &Scene,
+        (subjects, taken): (&[usize], &Taken),
+        tracking: &mut Tracking,
+        counter: &Counter,
+    ) -> Result<(), TrackError> {
+        for wave in waves(scene, subjects) {
+            let jobs: Vec<(usize, OutwardJob)> =
+                wave.iter().map(|&p| (p, job(scene, tracking, p, taken.get(&p)))).collect();
             let results: Vec<Result<(OutwardTrack, bool), TrackError>> = jobs
                 .par_iter()
                 .map(|(_, job)| {
-                    let result = match self.known.get(&job.name) {
-                        Some((known, result)) if known == job => (result.clone(), false),
-                        _ => {
-                            let kit = Kit { progress: &counter, mechanisms: Mechanisms::default(), ..kit };
-                            (track(kit, job)?, true)
-                        }
+                    let known = [&self.known, &self.again].into_iter().filter_map(|memory| memory.get(&job.name));
+                    let result = match known.into_iter().find(|(known, _)| known == job) {
+                        Some((_, result)) => (result.clone(), false),
+                        None => (track(Kit { mechanisms: Mechanisms::default(), ..kit }, job)?, true),
                     };
                     counter.finished()?;
                     Ok(result)
@@ -60,12 +88,29 @@ impl Memory {
             for ((p, job), result) in jobs.into_iter().zip(results) {
                 let (result, solved) = result?;
                 put(tracking, p, &result, solved);
-                self.known.insert(job.name.clone(), (job, result));
+                let memory = if taken.is_empty() { &mut self.known } else { &mut self.again };
+                memory.insert(job.name.clone(), (job, result));
             }
         }
-        tracking.jobs.sort_by_key(|job| (job.part, job.span));
         Ok(())
     }
+}
+
+/// The contours of the hosts where a part came to their place. What the part had there is forgotten: it hides nothing.
+fn taken(tracking: &mut Tracking, came: &Came) -> Taken {
+    let on = |&(frame, host): &(FrameNumber, usize)| Some((frame, tracking.parts[host].tracks.get(&frame)?.clone()));
+    let mut taken = Taken::new();
+    for (&guest, frames) in came {
+        for (frame, contour) in frames.iter().filter_map(on) {
+            taken.entry(guest).or_default().entry(frame).or_default().push(contour);
+        }
+    }
+    for (&guest, frames) in came {
+        for (frame, _) in frames {
+            tracking.parts[guest].tracks.remove(frame);
+        }
+    }
+    taken
 }
 
 /// Groups of parts of the same depth, the nearest first.
@@ -76,7 +121,12 @@ fn waves(scene: &Scene, subjects: &[usize]) -> Vec<Vec<usize>> {
     order.chunk_by(|&a, &b| depth(a) == depth(b)).map(<[usize]>::to_vec).collect()
 }
 
-fn job(scene: &Scene, tracking: &Tracking, p: usize) -> OutwardJob {
+fn job(
+    scene: &Scene,
+    tracking: &Tracking,
+    p: usize,
+    taken: Option<&BTreeMap<FrameNumber, Vec<Vec<Point>>>>,
+) -> OutwardJob {
     let (part, footage) = (&scene.parts[p], &scene.footage);
     let (frame, key) = part.keys.first_key_value().map(|(&f, k)| (f, k.clone())).unwrap_or_default();
     let corrected: BTreeSet<FrameNumber> = part.pins.keys().chain(part.centers.keys()).copied().collect();
@@ -91,11 +141,17 @@ fn job(scene: &Scene, tracking: &Tracking, p: usize) -> OutwardJob {
             other.closed && other.depth > part.depth && other.point_count() > 2
         })
         .collect();
+    // A part that came to the place of a key does not hide it: the artist saw what is there.
+    let came = |o: usize, f: FrameNumber, contour: &[Point]| {
+        f == frame && !scene.parts[o].keys.contains_key(&f) && on_one_place(contour, &key)
+    };
     let contours = |f: FrameNumber| -> Vec<Vec<Point>> {
-        let on = |&o: &usize| tracking.parts[o].tracks.get(&f).or_else(|| scene.parts[o].keys.get(&f)).cloned();
-        nearer.iter().filter_map(on).collect()
+        let on = |&o: &usize| tracking.parts[o].tracks.get(&f).or_else(|| scene.parts[o].keys.get(&f)).map(|c| (o, c));
+        let hides = nearer.iter().filter_map(on).filter(|(o, contour)| !came(*o, f, contour));
+        hides.map(|(_, contour)| contour.clone()).collect()
     };
     let hidden = (footage.first..=footage.last).map(|f| (f, contours(f))).filter(|(_, c)| !c.is_empty());
+    let occluders = if nearer.is_empty() { BTreeMap::new() } else { hidden.collect() };
     OutwardJob {
         name: part.name.clone(),
         closed: part.closed,
@@ -103,7 +159,8 @@ fn job(scene: &Scene, tracking: &Tracking, p: usize) -> OutwardJob {
         key,
         footage: [footage.first, footage.last],
         corrections: corrected.iter().filter_map(correction).collect(),
-        occluders: if nearer.is_empty() { BTreeMap::new() } else { hidden.collect() },
+        occluders,
+        taken: taken.cloned().unwrap_or_default(),
         size: (footage.width, footage.height),
     }
 }
@@ -119,6 +176,7 @@ fn put(tracking: &mut Tracking, part: usize, found: &OutwardTrack, solved: bool)
         initial_cost: found.cost,
         final_cost: found.cost,
     };
+    tracking.jobs.retain(|job| job.part != part);
     tracking.jobs.push(JobReport { part, span: Span { first, last }, summary, solved });
 }
 
@@ -138,7 +196,7 @@ impl Counter<'_> {
         // The listener is called under the lock, so that the reported share never decreases.
         let mut done = self.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         *done += more;
-        self.listener.report(step, *done as f64 / self.all.max(1) as f64)
+        self.listener.report(step, (*done as f64 / self.all.max(1) as f64).min(1.0))
     }
 }
 

@@ -29,6 +29,8 @@ const BETA: [f64; 3] = [-3.71, -1.0, -0.595];
 
 /// Least mean probability of a trusted part.
 pub const TRUSTED: f64 = 0.5;
+/// Largest probability of a point of a part that is on the place of another one.
+const TAKEN: f64 = 0.3;
 /// Number of untrusted drawings in a row after which a part is lost.
 pub const PATIENCE: usize = 4;
 /// Least share of visible samples of a trusted part.
@@ -62,6 +64,13 @@ impl Sureness {
         let seen_share = share(&|p| !seen.cover.hides(p));
         let trust = if count > 0 && seen_share >= LEAST_SEEN { sum / count as f64 } else { 0.0 };
         Self { points, trust, seen: seen_share, inside: share(&|p| in_picture(p, seen.cover.width())) }
+    }
+
+    /// The same of a part that is on the place of another one: probably wrong, whatever fits.
+    pub fn untrusted(mut self) -> Self {
+        self.points.iter_mut().for_each(|point| *point = point.min(TAKEN));
+        self.trust = 0.0;
+        self
     }
 
     /// Whether the part is trusted on the drawing.
