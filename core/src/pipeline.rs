@@ -44,7 +44,7 @@ pub use outdated::outdated;
 pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use render::render;
-pub use report::{Counts, PartReport, Report, Weakest};
+pub use report::{Counts, PartReport, Report, Together, Weakest};
 pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
 pub use shapeless::nothing_for;
 pub use sheet::sheet;

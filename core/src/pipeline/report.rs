@@ -3,7 +3,7 @@
 use super::unseen;
 use crate::scene::outcome::confidence;
 use crate::scene::{FrameNumber, Outcome, Scene};
-use crate::track::weakest_frame;
+use crate::track::{WeakestFrame, twins, weakest_frame};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -16,6 +16,17 @@ pub struct Report {
     pub weakest_frame: Option<Weakest>,
     /// Each part, in the order of the document.
     pub parts: Vec<PartReport>,
+    /// Parts that look alike and lie on one place.
+    pub together: Vec<Together>,
+}
+
+/// Two parts that lie on one place: one of them is wrong there, or hidden by the other one.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Together {
+    /// Their names.
+    pub parts: [String; 2],
+    /// The frames.
+    pub frames: Vec<FrameNumber>,
 }
 
 /// Numbers of tracked contours.
@@ -30,12 +41,14 @@ pub struct Counts {
 }
 
 /// The weakest frame.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Weakest {
     /// The frame.
     pub frame: FrameNumber,
-    /// Number of parts that are expected to be wrong there.
+    /// How much is in doubt there, in parts.
     pub score: f64,
+    /// Names of the parts that are lost or doubtful there, the least sure one first.
+    pub parts: Vec<String>,
 }
 
 /// The report on a part.
@@ -74,8 +87,14 @@ impl Report {
             doubtful: count(|p| p.doubtful.len()),
             lost: count(|p| p.lost.len()),
         };
-        let weakest = weakest_frame(&scene.parts).map(|w| Weakest { frame: w.frame, score: w.score });
-        Self { contours, weakest_frame: weakest, parts }
+        let weakest = weakest_frame(&scene.parts).map(|WeakestFrame { frame, score, parts }| {
+            let parts = parts.into_iter().map(|part| scene.parts[part].name.clone()).collect();
+            Weakest { frame, score, parts }
+        });
+        let together = twins(&scene.parts)
+            .into_iter()
+            .map(|(pair, frames)| Together { parts: pair.map(|part| scene.parts[part].name.clone()), frames });
+        Self { contours, weakest_frame: weakest, parts, together: together.collect() }
     }
 
     /// Lines for a person: one for each part that was tracked, and one for all.
@@ -87,10 +106,37 @@ impl Report {
             lines.push(format!("all {} parts: {}", lines.len(), counted([sure, doubtful, lost])));
         }
         lines.extend(self.parts.iter().filter(|part| !part.unseen.is_empty()).map(PartReport::question));
-        if let Some(weakest) = self.weakest_frame.filter(|_| self.contours.doubtful + self.contours.lost > 0) {
-            lines.push(format!("the next key helps most on frame {}", weakest.frame));
-        }
+        lines.extend(self.together.iter().map(Together::line));
+        lines.extend(self.weakest_frame.as_ref().and_then(|weakest| self.advice(weakest)));
         lines
+    }
+}
+
+impl Report {
+    /// On which frame the next key of which parts helps most. `None` if every contour is sure.
+    fn advice(&self, weakest: &Weakest) -> Option<String> {
+        let frame = weakest.frame;
+        if weakest.parts.is_empty() {
+            return (self.contours.doubtful + self.contours.lost > 0)
+                .then(|| format!("the next key helps most on frame {frame}"));
+        }
+        let is_lost = |name: &&String| self.parts.iter().any(|part| part.name == **name && part.lost.contains(&frame));
+        let (lost, doubtful): (Vec<&String>, Vec<&String>) = weakest.parts.iter().partition(is_lost);
+        let said = [(lost, "lost"), (doubtful, "doubtful")].into_iter().filter(|(names, _)| !names.is_empty());
+        let said: Vec<String> = said.map(|(names, what)| format!("{} ({what})", quoted(&names))).collect();
+        Some(format!("the next key helps most on frame {frame}: {}", said.join(", ")))
+    }
+}
+
+/// Names in quotes, with commas between them.
+fn quoted(names: &[&String]) -> String {
+    names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ")
+}
+
+impl Together {
+    fn line(&self) -> String {
+        let [a, b] = &self.parts;
+        format!("parts {a:?} and {b:?} lie on one place on {}: a key of one of them parts them", runs(&self.frames))
     }
 }
 
@@ -159,9 +205,23 @@ mod tests {
             "part \"arm\": 4 frames sure, 1 doubtful, 3 lost (doubtful: 3; lost: 4-5, 7)",
             "part \"head\": 1 frame sure",
             "all 2 parts: 5 frames sure, 1 doubtful, 3 lost",
-            "the next key helps most on frame 4",
+            "the next key helps most on frame 4: \"arm\" (lost)",
         ];
         assert_eq!(Report::of(&scene()).lines(), expected);
+    }
+
+    #[test]
+    fn parts_on_one_place_are_named_together() {
+        let mut scene = scene();
+        let square = |x: f64| [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0)].map(|(dx, dy)| Point::new(x + dx, dy)).to_vec();
+        for (part, places) in scene.parts.iter_mut().zip([[0.0, 20.0, 20.0], [20.0; 3]]) {
+            part.closed = true;
+            part.tracks = (1..).zip(places.map(square)).collect();
+            part.confidence = (1..4).map(|frame| (frame, vec![0.7; 3])).collect();
+        }
+        let lines = Report::of(&scene).lines();
+        let expected = "parts \"arm\" and \"head\" lie on one place on 2-3: a key of one of them parts them";
+        assert!(lines.iter().any(|line| line == expected), "{lines:?}");
     }
 
     #[test]
@@ -171,5 +231,6 @@ mod tests {
         assert_eq!(report["parts"][0]["lost"], serde_json::json!([4, 5, 7]));
         assert_eq!(report["parts"][0]["confidence"]["3"], 0.6);
         assert_eq!(report["weakest_frame"]["frame"], 4);
+        assert_eq!(report["weakest_frame"]["parts"], serde_json::json!(["arm"]));
     }
 }

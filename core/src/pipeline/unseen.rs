@@ -3,11 +3,17 @@
 //! Such a part often needs no contour there, and its track is a guess. Only the artist knows, so these frames are a
 //! question. Frames on which the contour is sure are left out: then the tracker has seen enough of the part.
 //!
+//! A lost contour may lie behind something because it is wrong. So its place is asked a second time: the contour between the nearest keys and sure contours before
+//! and after, in proportion to time, must be hidden too. Without such contours on both sides the track alone counts.
+//!
 //! Limits: the contours of the nearer parts are trusted, and only parts of the document hide. A part that its own film
-//! leaves out, without anything in front of it, is not found.
+//! leaves out, without anything in front of it, is not found. A part that goes behind another one and comes back between two sure contours is
+//! found only where the straight way is hidden.
 
-use crate::geometry::{Point, polygon};
+use crate::geometry::Point;
+use crate::scene::outcome::Verdict;
 use crate::scene::{FrameNumber, Outcome, Part, Scene};
+use crate::track::{covers, hidden_share, is_under};
 
 /// Share of a contour's places that must be hidden.
 const HIDDEN: f64 = 0.95;
@@ -24,18 +30,25 @@ pub fn unseen(scene: &Scene, part: usize) -> Vec<FrameNumber> {
 fn is_hidden(scene: &Scene, index: usize, frame: FrameNumber) -> bool {
     let part = &scene.parts[index];
     let Some(points) = part.tracks.get(&frame) else { return false };
-    let nearer =
-        |other: &&Part| other.closed && other.depth_at(frame) > part.depth_at(frame) && !other.is_absent(frame);
-    let covers: Vec<Vec<Point>> = scene.parts.iter().filter(nearer).filter_map(|other| other.outline(frame)).collect();
+    let covers = covers(&scene.parts, index, frame);
     let (width, height) = (scene.footage.width as f64, scene.footage.height as f64);
-    let hidden = |p: &Point| {
+    let hidden = |p: Point| {
         let inside = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < height;
-        !inside || covers.iter().any(|cover| polygon::contains(cover, *p))
+        !inside || is_under(&covers, p)
     };
-    let between = points.windows(2).map(|pair| pair[0].midpoint(pair[1]));
-    let places: Vec<Point> = points.iter().copied().chain(between).collect();
-    let count = places.iter().filter(|p| hidden(p)).count();
-    !places.is_empty() && count as f64 >= HIDDEN * places.len() as f64
+    let hides = |points: &[Point]| hidden_share(points, hidden) >= HIDDEN;
+    hides(points) && expected(part, frame).is_none_or(|points| hides(&points))
+}
+
+/// Where the keys and sure contours before and after a frame expect a part on it. `None` if they are not on both sides.
+fn expected(part: &Part, frame: FrameNumber) -> Option<Vec<Point>> {
+    let known = |&at: &FrameNumber| part.keys.contains_key(&at) || Verdict::on(part, at) == Some(Verdict::Sure);
+    let frames = || part.keys.keys().chain(part.tracks.keys()).copied();
+    let before = frames().filter(|&at| at < frame).filter(known).max()?;
+    let after = frames().filter(|&at| at > frame).filter(known).min()?;
+    let contour = |at: FrameNumber| part.keys.get(&at).or_else(|| part.tracks.get(&at));
+    let share = f64::from(frame - before) / f64::from(after - before);
+    Some(contour(before)?.iter().zip(contour(after)?).map(|(a, b)| a.lerp(*b, share)).collect())
 }
 
 #[cfg(test)]
@@ -70,6 +83,17 @@ mod tests {
         assert_eq!(unseen(&scene([0.1; 5]), 0), [1, 2, 4], "on 3 the part is half in the picture");
         assert_eq!(unseen(&scene([0.1, 1.0, 0.1, 0.1, 0.6]), 0), [2, 4], "a sure contour has been seen");
         assert!(unseen(&scene([0.1; 5]), 1).is_empty());
+    }
+
+    #[test]
+    fn a_lost_contour_behind_something_is_not_unseen_where_sure_ones_beside_it_are_seen() {
+        let mut scene = scene([1.0, 0.1, 0.1, 1.0, 1.0]);
+        scene.parts[0].tracks.insert(3, square(8.0, 6.0));
+        assert!(unseen(&scene, 0).is_empty(), "it stays left of what hides it");
+        scene.parts[0].tracks.insert(3, square(32.0, 6.0));
+        assert_eq!(unseen(&scene, 0), [2], "halfway on 1");
+        scene.parts[0].tracks.insert(0, square(21.0, 6.0));
+        assert_eq!(unseen(&scene, 0), [1, 2]);
     }
 
     #[test]

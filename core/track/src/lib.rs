@@ -64,6 +64,7 @@ pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Ter
 pub use contract::tracking::{Ending, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
 pub use rototoon::mechanisms::{Mechanism, Mechanisms};
 pub use shared::held::{began, drawings};
+pub use shared::hidden::{covers, hidden_share, is_under};
 pub use shared::twins::twins;
 pub use shared::weakest::{WeakestFrame, weakest_frame};
 pub use tracker::{Preset, TrackOptions, Tracker};

@@ -19,6 +19,7 @@ pub mod drawings;
 pub mod edge_maps;
 pub mod features;
 pub mod held;
+pub mod hidden;
 pub mod look;
 pub mod part_by_part;
 pub mod sought;
