@@ -137,7 +137,7 @@ def note_ends(ob, reading: document.Reading, found) -> None:
 
 
 NAMED = 3
-"""Largest number of parts that a message names."""
+"""Largest number of parts of which a message says more than the name."""
 
 
 def told(run: Run, strokes: int, reset: bool = False) -> str:
@@ -171,13 +171,13 @@ def goes_on(ob, run: Run) -> str:
 
 
 def where_to_look(ob, run: Run) -> str:
-    """The parts that were lost or are most likely off, and where; empty if there are none."""
+    """All parts that were lost or are most likely off, of the first ones also where; empty if there are none."""
     offset, session = ob.rototoon.frame_offset, run.entry.session
     lost: dict[str, list[int]] = {}
     for end in run.worker.result.ends:
         if end.reason == ends.LOST:
             lost.setdefault(end.part, []).append(end.frame + offset)
-    said = [f'"{name}" needs a key on {listed(frames)}' for name, frames in lost.items()]
+    said = {name: f'"{name}" needs a key on {listed(frames)}' for name, frames in lost.items()}
     asked = []
     for part in run.inputs["parts"]:
         drawn = np.asarray(session.tracks(part["name"]).frames).astype(int).tolist()
@@ -186,10 +186,9 @@ def where_to_look(ob, run: Run) -> str:
     for part, outcome in zip(run.inputs["parts"], outcomes(asked).parts, strict=True):
         if outcome.lost and part["name"] not in lost:
             off = listed([frame + offset for frame in outcome.lost])
-            said.append(f'"{part["name"]}" is most likely off on {off}')
-    if len(said) > NAMED:
-        said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')} to look at"]
-    return "; ".join(said)
+            said[part["name"]] = f'"{part["name"]}" is most likely off on {off}'
+    more = ", ".join(f'"{name}"' for name in list(said)[NAMED:])
+    return "; ".join([*list(said.values())[:NAMED], *([f"look at {more} too"] if more else [])])
 
 
 def nothing_to_track() -> Problem:
