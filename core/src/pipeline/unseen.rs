@@ -4,7 +4,7 @@
 //! question. Frames on which the contour is sure are left out: then the tracker has seen enough of the part.
 //!
 //! A lost contour may lie behind something because it is wrong. So its place is asked a second time: the contour between the nearest keys and sure contours before
-//! and after, in proportion to time, must be hidden too. Without such contours on both sides the track alone counts.
+//! and after, in proportion to time, must be hidden by half too. Without such contours on both sides the track alone counts.
 //!
 //! Limits: the contours of the nearer parts are trusted, and only parts of the document hide. A part that its own film
 //! leaves out, without anything in front of it, is not found. A part that goes behind another one and comes back between two sure contours is
@@ -17,6 +17,8 @@ use crate::track::{covers, hidden_share, is_under};
 
 /// Share of a contour's places that must be hidden.
 const HIDDEN: f64 = 0.95;
+/// The same of the place where sure contours expect it, which is a rougher guess.
+const EXPECTED: f64 = 0.5;
 
 /// The frames on which a part of the scene can probably not be seen, rising.
 pub fn unseen(scene: &Scene, part: usize) -> Vec<FrameNumber> {
@@ -36,8 +38,8 @@ fn is_hidden(scene: &Scene, index: usize, frame: FrameNumber) -> bool {
         let inside = p.x >= 0.0 && p.y >= 0.0 && p.x < width && p.y < height;
         !inside || is_under(&covers, p)
     };
-    let hides = |points: &[Point]| hidden_share(points, hidden) >= HIDDEN;
-    hides(points) && expected(part, frame).is_none_or(|points| hides(&points))
+    let expected = || expected(part, frame).is_none_or(|points| hidden_share(&points, hidden) >= EXPECTED);
+    hidden_share(points, hidden) >= HIDDEN && expected()
 }
 
 /// Where the keys and sure contours before and after a frame expect a part on it. `None` if they are not on both sides.
