@@ -32,14 +32,12 @@ mod tests {
             tracks: (0..=4).map(|frame| (frame, contour.clone())).collect(),
             ..Part::default()
         };
-        let mut scene = Scene { footage, parts: vec![part("arm"), part("leg"), part("head"), part("hidden")] };
+        let mut scene = Scene { footage, parts: vec![part("arm"), part("leg"), part("head")] };
         assert_eq!(outdated(&scene), None);
         scene.parts[0].keys.insert(1, vec![Point::ZERO, Point::X, Point::Y * 1.02]);
         scene.parts[1].keys.insert(4, vec![Point::ZERO, Point::X]);
-        // What a file rounds is no change, and nothing is drawn where the part is not there.
+        // What a file rounds is no change.
         scene.parts[2].keys.insert(1, vec![Point::ZERO, Point::X, Point::Y * 1.005]);
-        scene.parts[3].keys.insert(1, vec![Point::ONE; 3]);
-        scene.parts[3].absent = vec![[1, 1]];
         assert_eq!(scene.parts[0].outdated().collect::<Vec<_>>(), [1]);
         let said = outdated(&scene).unwrap();
         assert!(said.contains(r#"used: "arm", "leg"; run"#), "{said}");

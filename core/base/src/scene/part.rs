@@ -137,7 +137,7 @@ impl Part {
             key.len() != tracked.len() || key.iter().zip(tracked).any(|(a, b)| a.distance(*b) > SAME)
         };
         self.keys.iter().filter_map(move |(&frame, key)| {
-            let tracked = self.tracks.get(&frame).filter(|_| !self.is_absent(frame))?;
+            let tracked = self.tracks.get(&frame)?;
             differs(key, tracked).then_some(frame)
         })
     }
