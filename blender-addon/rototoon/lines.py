@@ -37,9 +37,9 @@ class Stroke:
     confidence: float
     """The probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt: it was drawn, or begins here."""
     fill: bool
-    """Whether what is inside is filled, such as a solid black. Without widths there is no line around it."""
+    """Whether what is inside is filled with the colour, such as a solid black. Without widths there is no line around it."""
     fill_colour: tuple[float, float, float] | None = None
-    """sRGB from 0 to 1 of what is inside; `None` if it has the stroke's own colour."""
+    """sRGB from 0 to 1 of the fill below a line; `None` if there is none."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Traced:
     confidence: memoryview
     """float64 (S,): for each stroke the probability that it is the stroke of its number; 1 if that is beyond doubt."""
     fills: memoryview
-    """int32 (S,): not 0 if what is inside is filled."""
+    """int32 (S,): not 0 if what is inside is filled with the stroke's colour."""
     fill_colours: memoryview
-    """float64 (S, 3): sRGB from 0 to 1 of what is inside, NaN if it has the stroke's own colour."""
+    """float64 (S, 3): sRGB from 0 to 1 of the fill below a line, NaN if there is none."""
 
     def on(self, frame: int) -> list[Stroke]:
         """The strokes of a frame, from back to front. There are none on a frame that was not traced."""

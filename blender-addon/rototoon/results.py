@@ -76,7 +76,7 @@ class WeakestFrame:
 
     frame: int
     score: float
-    """Doubt on that frame: the sum over parts of the mean of ``1 - confidence``, smoothed over time."""
+    """Doubt on that frame: the sum over parts of what the mean confidence lacks to that of a sure contour, as a share of it, smoothed over time."""
 
 
 @dataclass(frozen=True)

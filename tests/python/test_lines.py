@@ -80,13 +80,23 @@ def test_the_outline_of_a_drawn_shape_stays_filled(tmp_path):
         write_png(tmp_path / f"line_{frame:03}.png", draw(frame, solid=True))
     turns = [2 * math.pi * k / 24 for k in range(24)]
     disc = {"points": [[90 + 14 * math.cos(t), 90 + 14 * math.sin(t)] for t in turns], "closed": True, "fill": True}
-    disc["fill_colour"] = [1, 0.5, 0]
     with opened(tmp_path, drawings=[{"frame": 0, "strokes": [disc]}]) as session:
         traced = session.trace()
     for frame in range(4):
         (own,) = [stroke for stroke in traced.on(frame) if stroke.track == 0]
         assert own.fill and numpy.asarray(own.points).mean(0) == pytest.approx((90 + STEP * frame, 90), abs=0.7)
-        assert own.fill_colour == (1, 0.5, 0), "it has the colour that was drawn"
+        assert own.fill_colour is None, "the colour of a shape without a line is that of the stroke"
+
+
+def test_the_colour_below_a_drawn_line_is_carried(film):
+    turns = [2 * math.pi * k / 24 for k in range(24)]
+    ring = {"points": [[110 + 15 * math.cos(t), 40 + 15 * math.sin(t)] for t in turns], "closed": True, "widths": [3] * 24}
+    ring["fill_colour"] = [1, 0.5, 0]
+    with opened(film, drawings=[{"frame": 0, "strokes": [ring]}]) as session:
+        traced = session.trace()
+    for frame in range(4):
+        (own,) = [stroke for stroke in traced.on(frame) if stroke.track == 0]
+        assert own.closed and not own.fill and own.fill_colour == (1, 0.5, 0)
         assert all(other.fill_colour is None for other in traced.on(frame) if other.track != 0)
 
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xa0007baa00c27fea
+HEADER_HASH = 0x73a55e71f4d964be
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0

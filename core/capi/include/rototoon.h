@@ -486,7 +486,7 @@ RototoonStatus rototoon_session_curves_of(const struct RototoonSession *session,
                                           struct RototoonText **error);
 
 // Returns the frame on which the next key helps most, as JSON `{"frame", "score"}`. It is `null` if nothing is tracked
-// or if every frame is a key frame or next to one. The score is the sum over the parts of the mean of 1 - confidence,
+// or if every frame is a key frame or next to one. The score is the sum over the parts of what the mean confidence lacks to that of a sure contour, as a share of it,
 // smoothed over time.
 RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *session,
                                               struct RototoonText **weakest,
@@ -783,8 +783,8 @@ RototoonStatus rototoon_session_traced(const struct RototoonSession *session,
 // - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 // - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 //   `rototoon_outcomes` tells which values are sure, doubtful and lost.
-// - `fills`: for each stroke 1 if what is inside is filled, such as a solid black, otherwise 0. Only closed strokes are filled. A fill
-//   without widths has no line around it. [`rototoon_traced_fill_colours`] gives the colours of fills.
+// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
+//   strokes are filled. A fill without widths has no line around it. [`rototoon_traced_fill_colours`] gives fills below lines.
 RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     size_t *frame_count,
                                     const int32_t **frames,
@@ -799,8 +799,8 @@ RototoonStatus rototoon_traced_read(const struct RototoonTraced *traced,
                                     const int32_t **fills,
                                     struct RototoonText **error);
 
-// Reads the colours of the fills of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the order of
-// `rototoon_traced_read`, and lives as long as the handle. They are NaN where a fill has the colour of its stroke.
+// Reads the colours of the fills below the lines of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the
+// order of `rototoon_traced_read`, and lives as long as the handle. They are NaN where no fill is below the line.
 RototoonStatus rototoon_traced_fill_colours(const struct RototoonTraced *traced,
                                             size_t *stroke_count,
                                             const double **fill_colours,

@@ -128,7 +128,7 @@ pub unsafe extern "C" fn rototoon_session_curves_of(
 }
 
 /// Returns the frame on which the next key helps most, as JSON `{"frame", "score"}`. It is `null` if nothing is tracked
-/// or if every frame is a key frame or next to one. The score is the sum over the parts of the mean of 1 - confidence,
+/// or if every frame is a key frame or next to one. The score is the sum over the parts of what the mean confidence lacks to that of a sure contour, as a share of it,
 /// smoothed over time.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_weakest_frame(

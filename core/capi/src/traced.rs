@@ -33,7 +33,7 @@ pub struct RototoonTraced {
     pub confidence: Vec<f64>,
     /// For each stroke 1 if what is inside is filled, otherwise 0.
     pub fills: Vec<i32>,
-    /// Three numbers for each stroke, sRGB from 0 to 1; NaN where a fill has the stroke's own colour.
+    /// Three numbers for each stroke, sRGB from 0 to 1: the colour of the fill below its line; NaN if there is none.
     pub fill_colours: Vec<f64>,
 }
 

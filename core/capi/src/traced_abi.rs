@@ -78,8 +78,8 @@ pub unsafe extern "C" fn rototoon_session_traced(
 /// - `widths`: the width of the line at each point in pixels; NaN if the stroke has no widths.
 /// - `confidence`: for each stroke the probability, 0 to 1, that it is the stroke of its number. It is 1 if that is beyond doubt.
 ///   `rototoon_outcomes` tells which values are sure, doubtful and lost.
-/// - `fills`: for each stroke 1 if what is inside is filled, such as a solid black, otherwise 0. Only closed strokes are filled. A fill
-///   without widths has no line around it. [`rototoon_traced_fill_colours`] gives the colours of fills.
+/// - `fills`: for each stroke 1 if what is inside is filled with its colour, such as a solid black, otherwise 0. Only closed
+///   strokes are filled. A fill without widths has no line around it. [`rototoon_traced_fill_colours`] gives fills below lines.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_traced_read(
     traced: *const RototoonTraced,
@@ -132,8 +132,8 @@ pub unsafe extern "C" fn rototoon_traced_read(
     }
 }
 
-/// Reads the colours of the fills of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the order of
-/// `rototoon_traced_read`, and lives as long as the handle. They are NaN where a fill has the colour of its stroke.
+/// Reads the colours of the fills below the lines of traced strokes. `fill_colours` has three numbers for each stroke, sRGB from 0 to 1, in the
+/// order of `rototoon_traced_read`, and lives as long as the handle. They are NaN where no fill is below the line.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_traced_fill_colours(
     traced: *const RototoonTraced,
