@@ -27,7 +27,8 @@ use crate::shared::within::Region;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameNumber, Scene};
-use std::sync::Arc;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Share of the places whose flow must be as near to the pan, in working pixels.
 const MOST: f64 = 0.6;
@@ -48,6 +49,8 @@ struct View<'a> {
     tracking: &'a Tracking,
     /// Pixels of the picture per working pixel.
     scale: f64,
+    /// By frame the pan to the next one, as far as a part has asked for it: it is the same for all parts.
+    pans: Mutex<BTreeMap<FrameNumber, Option<Point>>>,
 }
 
 /// Gives each closed part of a tracked scene one contour on the frames that show one drawing of it.
@@ -57,7 +60,7 @@ struct View<'a> {
 /// The error of a picture that cannot be read, or the cancellation by the listener of `kit`.
 pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<(), TrackError> {
     let scale = working_scale(scene.footage.height);
-    let view = View { kit, scene, tracking, scale };
+    let view = View { kit, scene, tracking, scale, pans: Mutex::default() };
     let parts: Vec<usize> = (0..scene.parts.len()).filter(|&p| scene.parts[p].closed).collect();
     let taken: Vec<Result<Taken, TrackError>> = parts.par_iter().with_max_len(1).map(|&p| view.taken(p)).collect();
     let taken = taken.into_iter().collect::<Result<Vec<Taken>, TrackError>>()?;
@@ -135,8 +138,20 @@ impl View<'_> {
         if let Some(shift) = self.same(p, pair, Point::ZERO)? {
             return Ok(Some(shift * sign));
         }
-        let Some(pan) = self.pan(before, frame)? else { return Ok(None) };
+        let Some(pan) = self.kept_pan(before, frame)? else { return Ok(None) };
         Ok(self.same(p, pair, pan * sign)?.map(|shift| shift * sign))
+    }
+
+    /// The [pan](Self::pan), measured once.
+    fn kept_pan(&self, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
+        let pans = || self.pans.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(&pan) = pans().get(&before) {
+            return Ok(pan);
+        }
+        // Without the lock: two threads may both measure it, and find the same.
+        let pan = self.pan(before, frame)?;
+        pans().insert(before, pan);
+        Ok(pan)
     }
 
     /// Where the picture around the parts goes from a frame to the next one, in working pixels: the median of the flow. `None` if
