@@ -32,7 +32,12 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    directory: bpy.props.StringProperty(name="Folder", description="The folder that Send to Farm wrote to", subtype="DIR_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"})
+    directory: bpy.props.StringProperty(
+        name="Folder",
+        description="The folder that Send to Farm wrote to",
+        subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+    )
     sent_from: bpy.props.StringProperty(
         name="Sent From",
         description="Name of the file that was sent, such as shot_v001.blend, if this file is a later version of it. If empty, this file's name",

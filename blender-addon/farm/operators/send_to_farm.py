@@ -26,7 +26,10 @@ class ROTOTOON_OT_send_to_farm(Long, bpy.types.Operator):
     changes = guard.NOTHING
 
     directory: bpy.props.StringProperty(
-        name="Folder", description="The folder that gets the batch. The farm's machines must see it", subtype="DIR_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"}
+        name="Folder",
+        description="The folder that gets the batch. The farm's machines must see it",
+        subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     which: bpy.props.EnumProperty(
         name="Shots",
