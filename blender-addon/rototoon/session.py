@@ -16,7 +16,7 @@ from typing import Any
 from .fills import Click, Filled, flat
 from .lines import Traced
 from .native import handles
-from .native.arrays import as_json, buffer, text
+from .native.arrays import as_json, buffer, pair, text
 from .native.errors import RototoonError
 from .results import End, Job, Summary, Track, WeakestFrame
 from .types import Document, Points, Progress
@@ -34,13 +34,13 @@ class Session:
     @classmethod
     def open(cls, path: str | os.PathLike[str]) -> Session:
         """Opens a project file. A relative footage pattern is relative to the file's folder."""
-        handle = handles.Session.make("rototoon_session_open", *text(os.fspath(path)))
+        handle = handles.Session.make("rototoon_session_open", *text(os.fsdecode(path)))
         return cls(handle)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], folder: str | os.PathLike[str]) -> Session:
         """Opens a document in memory. A relative footage pattern is relative to `folder`."""
-        handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fspath(folder)))
+        handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fsdecode(folder)))
         return cls(handle)
 
     def document(self) -> Document:
@@ -61,7 +61,7 @@ class Session:
         If the file is in another folder than the session, a relative footage pattern is rewritten to name the same files.
         A frame of the footage is refused as a name.
         """
-        self._handle.call("rototoon_session_save", *text(os.fspath(path)))
+        self._handle.call("rototoon_session_save", *text(os.fsdecode(path)))
 
     def set_footage(self, footage: Mapping[str, Any]) -> None:
         """Replaces the document's ``footage``. If the pictures differ, the session forgets what it knows of them."""
@@ -97,8 +97,7 @@ class Session:
 
     def pin(self, part: str, frame: int, point: int, xy: Sequence[float]) -> None:
         """Fixes one control point on a frame between two keys, or beside the only key. The track passes through it exactly."""
-        x, y = xy
-        self._handle.call("rototoon_session_pin", *text(part), frame, point, x, y)
+        self._handle.call("rototoon_session_pin", *text(part), frame, point, *pair("xy", xy))
 
     def unpin(self, part: str, frame: int, point: int | None = None) -> None:
         """Releases a pin, or with ``point=None`` all pins of the frame. Does nothing if there is no pin."""
@@ -108,8 +107,7 @@ class Session:
 
     def set_center(self, part: str, frame: int, xy: Sequence[float]) -> None:
         """Fixes the mean of the part's control points on a frame between keys."""
-        x, y = xy
-        self._handle.call("rototoon_session_set_center", *text(part), frame, x, y)
+        self._handle.call("rototoon_session_set_center", *text(part), frame, *pair("xy", xy))
 
     def clear_center(self, part: str, frame: int) -> None:
         """Releases a corrected centre. Does nothing if there is none."""
@@ -298,9 +296,8 @@ def _flat(points: Points) -> array.array[float]:
         view = memoryview(points)  # type: ignore[arg-type]
     except TypeError:
         flat = array.array("d")
-        for point in points:
-            x, y = point
-            flat.extend((x, y))
+        for index, point in enumerate(points):
+            flat.extend(pair(f"points[{index}]", point))
         return flat
     if view.format != "d" or view.ndim != 2 or view.shape is None or view.shape[1] != 2:
         raise RototoonError(f"points: expected float64 of shape (N, 2), found {view.format} of shape {view.shape}")

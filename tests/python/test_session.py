@@ -3,6 +3,7 @@
 import array
 import gc
 import json
+import os
 import threading
 
 import pytest
@@ -257,7 +258,7 @@ def test_files_and_folders(session, document, folder, tmp_path):
     session.save(beside)
     assert json.loads(beside.read_text("utf-8"))["footage"]["pattern"] == "frame_%03d.png"
     session.save(elsewhere)
-    with Session.open(elsewhere) as moved:
+    with Session.open(os.fsencode(elsewhere)) as moved:
         assert moved.parts() == ["red", "blau ü"]
         moved.snap()
         assert len(moved.curves("red", 6)) == 4
@@ -314,6 +315,11 @@ def test_missing_frame_is_named(document, tmp_path):
         (lambda s: s.set_document({"rototoon": 1}), "footage"),
         (lambda s: s.set_document({"rototoon": 99, "footage": {}, "parts": []}), "99"),
         (lambda s: s.set_document({"rototoon": float("nan")}), "not a JSON document"),
+        (lambda s: s.set_key("red", 3, "xy"), "points[0]: found 'x', expected two numbers, x and y"),
+        (lambda s: s.set_key("red", 3, [(1, 1), (2, 2, 2)]), "points[1]: found (2, 2, 2), expected two numbers"),
+        (lambda s: s.pin("red", 3, 0, 5.0), "xy: found 5.0, expected two numbers"),
+        (lambda s: s.set_center("red", 3, ("left", 1)), "xy: found ('left', 1), expected two numbers"),
+        (lambda s: s.remove_part(7), "found 7, expected text"),
     ],
 )
 def test_errors_say_what_is_wrong_and_change_nothing(session, call, message):

@@ -6,6 +6,7 @@ import array
 import ctypes
 import json
 import operator
+import reprlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -15,8 +16,19 @@ from .errors import RototoonError
 
 def text(value: str) -> tuple[bytes, int]:
     """UTF-8 and its length."""
+    if not isinstance(value, str):
+        raise RototoonError(f"found {reprlib.repr(value)}, expected text")
     data = value.encode("utf-8", "surrogatepass")
     return data, len(data)
+
+
+def pair(name: str, value: Sequence[float]) -> tuple[float, float]:
+    """The two numbers of a place."""
+    try:
+        x, y = map(float, value)
+    except (TypeError, ValueError) as error:
+        raise RototoonError(f"{name}: found {reprlib.repr(value)}, expected two numbers, x and y") from error
+    return x, y
 
 
 def as_json(value: Mapping[str, Any] | Sequence[Any]) -> tuple[bytes, int]:

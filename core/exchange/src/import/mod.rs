@@ -9,6 +9,7 @@
 //! - [`silhouette`]: Silhouette shapes
 //! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
 //! - [`natron`](mod@natron): shapes of Natron's Roto and RotoPaint nodes
+//! - [`fusion`](mod@fusion): polygon masks of Fusion
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
@@ -19,6 +20,7 @@
 
 pub mod bvh;
 mod channel;
+pub mod fusion;
 mod hidden;
 mod limits;
 mod names;

@@ -12,14 +12,15 @@
 //! The other parts have their places from the broad tracks of all parts. So a corrective key has no other effect on them than
 //! the same correction has, and the order of the parts does not matter.
 
+use super::Rototoon;
 use super::choice::{Choice, Paths};
 use super::corrective::{Corrective, as_corrections, completed, found};
 use super::finish::Finish;
 use super::mechanisms::{Mechanism, Mechanisms};
 use super::pooled::Pooled;
+use super::pools::{FoundPools, occluders};
 use super::steady::Wobble;
 use super::untouched::uncorrected;
-use super::{FoundPools, Rototoon, occluders};
 use crate::contract::error::TrackError;
 use crate::contract::job::{Job, SpanTrack};
 use crate::contract::tasks::{JobProgress, SharedProgress, Task, assemble, job, tasks};

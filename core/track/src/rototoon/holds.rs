@@ -14,6 +14,9 @@
 //! What a part takes depends on its own contours and on the pictures alone. So a correction of another part changes nothing here. The pan is rounded to
 //! whole working pixels for the same reason: it depends on where the parts are.
 //!
+//! **Memory.** What a contour was asked in the last run, and where the picture goes around the same contours, is kept ([`Memory`]). So after a pin
+//! only the contours that it moved are compared again.
+//!
 //! **Limits.** The contours are known only when all is tracked, so the search for poses gains nothing. A part that is held behind one that moves is not found. A part that stands still and turns about itself without
 //! any drawn sign of it is held.
 
@@ -28,7 +31,7 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelI
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameNumber, Scene};
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Share of the places whose flow must be as near to the pan, in working pixels.
 const MOST: f64 = 0.6;
@@ -43,14 +46,41 @@ type Rank = (u8, f64);
 /// Contours and confidences that frames take from others.
 type Taken = Vec<(FrameNumber, Vec<Point>, Vec<f64>)>;
 
+/// What was found in the last run. It holds as long as the pictures are the same.
+#[derive(Default)]
+pub(super) struct Memory {
+    /// By the part's name.
+    asked: BTreeMap<String, Asked>,
+    pans: Pans,
+}
+
+/// By the frame of a contour and the one that it was compared with: the answers for each shift.
+type Asked = BTreeMap<(FrameNumber, FrameNumber), Vec<Answer>>;
+
+struct Answer {
+    contour: Vec<Point>,
+    shift: Point,
+    found: Option<Point>,
+}
+
+/// By frame the pan to the next one, as far as a part has asked for it, and the contours around which it was measured.
+type Pans = BTreeMap<FrameNumber, (Vec<Vec<Point>>, Option<Point>)>;
+
 struct View<'a> {
     kit: Kit<'a>,
     scene: &'a Scene,
     tracking: &'a Tracking,
     /// Pixels of the picture per working pixel.
     scale: f64,
-    /// By frame the pan to the next one, as far as a part has asked for it: it is the same for all parts.
-    pans: Mutex<BTreeMap<FrameNumber, Option<Point>>>,
+    memory: &'a Memory,
+    /// Shared, because the pan is the same for all parts.
+    pans: Mutex<Pans>,
+}
+
+/// A part whose frames are compared, with what was asked in this run.
+struct Subject {
+    part: usize,
+    asked: Asked,
 }
 
 /// Gives each closed part of a tracked scene one contour on the frames that show one drawing of it.
@@ -58,48 +88,52 @@ struct View<'a> {
 /// # Errors
 ///
 /// The error of a picture that cannot be read, or the cancellation by the listener of `kit`.
-pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<(), TrackError> {
+pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking, memory: &Memory) -> Result<Memory, TrackError> {
     let scale = working_scale(scene.footage.height);
-    let view = View { kit, scene, tracking, scale, pans: Mutex::default() };
+    let view = View { kit, scene, tracking, scale, memory, pans: Mutex::default() };
     let parts: Vec<usize> = (0..scene.parts.len()).filter(|&p| scene.parts[p].closed).collect();
-    let taken: Vec<Result<Taken, TrackError>> = parts.par_iter().with_max_len(1).map(|&p| view.taken(p)).collect();
-    let taken = taken.into_iter().collect::<Result<Vec<Taken>, TrackError>>()?;
-    for (p, taken) in parts.into_iter().zip(taken) {
+    let taken: Vec<Result<(Taken, Asked), TrackError>> =
+        parts.par_iter().with_max_len(1).map(|&part| view.taken(Subject { part, asked: Asked::new() })).collect();
+    let taken = taken.into_iter().collect::<Result<Vec<(Taken, Asked)>, TrackError>>()?;
+    let mut found = Memory { pans: std::mem::take(&mut *view.pans()), ..Memory::default() };
+    for (p, (taken, asked)) in parts.into_iter().zip(taken) {
+        found.asked.insert(scene.parts[p].name.clone(), asked);
         let PartTrack { tracks, confidence, .. } = &mut tracking.parts[p];
         for (frame, points, sure) in taken {
             tracks.insert(frame, points);
             confidence.insert(frame, sure);
         }
     }
-    Ok(())
+    Ok(found)
 }
 
 impl View<'_> {
-    /// The contours that frames of a part take from others.
-    fn taken(&self, p: usize) -> Result<Taken, TrackError> {
-        let (part, track) = (&self.scene.parts[p], &self.tracking.parts[p]);
+    /// The contours that frames of a part take from others, and what was asked for them.
+    fn taken(&self, mut of: Subject) -> Result<(Taken, Asked), TrackError> {
+        let (part, track) = (&self.scene.parts[of.part], &self.tracking.parts[of.part]);
         let mut taken = Taken::new();
         let mut run: Vec<(FrameNumber, Point)> = Vec::new();
         for &frame in track.tracks.keys().filter(|frame| !part.is_absent(**frame)) {
             let next = match run.last() {
                 Some(&(before, at)) if before + 1 == frame => {
                     self.kit.progress.report("Tracking", 1.0)?;
-                    self.shift(p, before, frame)?.map(|shift| at + shift)
+                    self.shift(&mut of, before, frame)?.map(|shift| at + shift)
                 }
                 _ => None,
             };
             if next.is_none() {
-                self.settle(p, &run, &mut taken)?;
+                self.settle(&mut of, &run, &mut taken)?;
                 run.clear();
             }
             run.push((frame, next.unwrap_or_default()));
         }
-        self.settle(p, &run, &mut taken)?;
-        Ok(taken)
+        self.settle(&mut of, &run, &mut taken)?;
+        Ok((taken, of.asked))
     }
 
     /// What the frames of a run of held ones, each with the part's place there, take from each other.
-    fn settle(&self, p: usize, run: &[(FrameNumber, Point)], taken: &mut Taken) -> Result<(), TrackError> {
+    fn settle(&self, of: &mut Subject, run: &[(FrameNumber, Point)], taken: &mut Taken) -> Result<(), TrackError> {
+        let p = of.part;
         let track = &self.tracking.parts[p];
         let free = run.iter().filter(|(frame, _)| self.rank(p, *frame).0 == 0);
         for &(frame, at) in free.filter(|_| run.len() > 1) {
@@ -113,7 +147,7 @@ impl View<'_> {
             });
             let is_other = |from: FrameNumber| from != frame && track.tracks[&from] != track.tracks[&frame];
             let Some(&(from, there)) = best.filter(|best| is_other(best.0)) else { continue };
-            let Some(shift) = self.same(p, (from, frame), at - there)? else { continue };
+            let Some(shift) = self.same(of, (from, frame), at - there)? else { continue };
             let points: Vec<Point> = track.tracks[&from].iter().map(|&q| q + shift * self.scale).collect();
             let sure = track.confidence.get(&from).cloned().unwrap_or_default();
             taken.push((frame, points, sure.into_iter().map(|sure| sure.min(HELD)).collect()));
@@ -122,8 +156,8 @@ impl View<'_> {
     }
 
     /// How far a part goes from a frame to the next one if both show one drawing of it. `None` if they do not.
-    fn shift(&self, p: usize, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
-        let tracks = &self.tracking.parts[p].tracks;
+    fn shift(&self, of: &mut Subject, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
+        let tracks = &self.tracking.parts[of.part].tracks;
         if tracks[&before] == tracks[&frame] {
             return Ok(Some(Point::ZERO));
         }
@@ -131,41 +165,57 @@ impl View<'_> {
         if self.kit.held(&[before, frame], &|| Ok(()))?.contains(&true) {
             return Ok(None);
         }
-        let [a, b] = [before, frame].map(|frame| self.rank(p, frame));
+        let [a, b] = [before, frame].map(|frame| self.rank(of.part, frame));
         let forwards = a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).is_ge();
         let pair = if forwards { (before, frame) } else { (frame, before) };
         let sign = if forwards { 1.0 } else { -1.0 };
-        if let Some(shift) = self.same(p, pair, Point::ZERO)? {
+        if let Some(shift) = self.same(of, pair, Point::ZERO)? {
             return Ok(Some(shift * sign));
         }
         let Some(pan) = self.kept_pan(before, frame)? else { return Ok(None) };
-        Ok(self.same(p, pair, pan * sign)?.map(|shift| shift * sign))
+        Ok(self.same(of, pair, pan * sign)?.map(|shift| shift * sign))
     }
 
-    /// The [pan](Self::pan), measured once.
+    /// The [pan](Self::pan), measured once for the same contours.
     fn kept_pan(&self, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
-        let pans = || self.pans.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(&pan) = pans().get(&before) {
+        if let Some(&(_, pan)) = self.pans().get(&before) {
             return Ok(pan);
         }
-        // Without the lock: two threads may both measure it, and find the same.
-        let pan = self.pan(before, frame)?;
-        pans().insert(before, pan);
+        let tracked = |track: &PartTrack| track.tracks.get(&before).map(|points| self.working(points));
+        let contours: Vec<Vec<Point>> = self.tracking.parts.iter().filter_map(tracked).collect();
+        let pan = match self.memory.pans.get(&before) {
+            Some((around, pan)) if *around == contours => *pan,
+            // Without the lock: two threads may both measure it, and find the same.
+            _ => self.pan(&contours, before, frame)?,
+        };
+        self.pans().insert(before, (contours, pan));
         Ok(pan)
     }
 
-    /// Where the picture around the parts goes from a frame to the next one, in working pixels: the median of the flow. `None` if
+    fn pans(&self) -> MutexGuard<'_, Pans> {
+        self.pans.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Where the picture around contours goes from a frame to the next one, in working pixels: the median of the flow. `None` if
     /// it stays, or does not go as one.
-    fn pan(&self, before: FrameNumber, frame: FrameNumber) -> Result<Option<Point>, TrackError> {
+    fn pan(
+        &self,
+        contours: &[Vec<Point>],
+        before: FrameNumber,
+        frame: FrameNumber,
+    ) -> Result<Option<Point>, TrackError> {
         let flow = self.kit.store.flow(self.kit.frames, before, frame)?;
         let pixel = LEVELS[FLOW_LEVEL] as f64;
-        let tracked = |track: &PartTrack| track.tracks.get(&before).map(|points| self.working(points));
-        let contours: Vec<Vec<Point>> = self.tracking.parts.iter().filter_map(tracked).collect();
+        let boxed: Vec<(&Vec<Point>, (Point, Point))> =
+            contours.iter().filter_map(|contour| Some((contour, polygon::bounds(contour)?))).collect();
+        let covers = |p: Point| {
+            let within = |(low, high): (Point, Point)| low.x <= p.x && p.x <= high.x && low.y <= p.y && p.y <= high.y;
+            boxed.iter().any(|&(contour, bounds)| within(bounds) && polygon::contains(contour, p))
+        };
         let mut along = [Vec::new(), Vec::new()];
         for y in (0..flow.height()).step_by(EACH) {
             for x in (0..flow.width()).step_by(EACH) {
-                let p = Point::new(x as f64 + 0.5, y as f64 + 0.5) * pixel;
-                if !contours.iter().any(|contour| polygon::contains(contour, p)) {
+                if !covers(Point::new(x as f64 + 0.5, y as f64 + 0.5) * pixel) {
                     let [u, v] = flow.get(x, y);
                     along[0].push(u);
                     along[1].push(v);
@@ -193,13 +243,23 @@ impl View<'_> {
     /// for at a shift, which is made exact unless it is none.
     fn same(
         &self,
-        p: usize,
-        (from, to): (FrameNumber, FrameNumber),
+        of: &mut Subject,
+        frames: (FrameNumber, FrameNumber),
         shift: Point,
     ) -> Result<Option<Point>, TrackError> {
-        let contour = self.working(&self.tracking.parts[p].tracks[&from]);
-        let [a, b] = [self.kit.colours(from)?, self.kit.colours(to)?];
-        Ok(Region::within(&contour, &a).and_then(|region| held(&region, [&a, &b], shift)))
+        let contour = self.working(&self.tracking.parts[of.part].tracks[&frames.0]);
+        let before = self.memory.asked.get(&self.scene.parts[of.part].name);
+        let before = before.and_then(|asked| asked.get(&frames)).map_or(&[][..], Vec::as_slice);
+        let is_this = |known: &&Answer| known.shift == shift && known.contour == contour;
+        let found = match before.iter().find(is_this) {
+            Some(known) => known.found,
+            None => {
+                let [a, b] = [self.kit.colours(frames.0)?, self.kit.colours(frames.1)?];
+                Region::within(&contour, &a).and_then(|region| held(&region, [&a, &b], shift))
+            }
+        };
+        of.asked.entry(frames).or_default().push(Answer { contour, shift, found });
+        Ok(found)
     }
 
     fn working(&self, points: &[Point]) -> Vec<Point> {

@@ -53,6 +53,7 @@ pub mod outward;
 pub mod pool;
 mod pooled;
 mod pooling;
+mod pools;
 pub mod propagate;
 pub mod refine;
 pub mod search;
@@ -66,8 +67,7 @@ mod turns;
 mod untouched;
 
 use crate::contract::error::TrackError;
-use crate::contract::job::Job;
-use crate::contract::tasks::{SharedProgress, Steps, Task, job, nearer_contours, next_wave, tasks};
+use crate::contract::tasks::{SharedProgress, Steps, Task, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
@@ -76,16 +76,12 @@ use crate::shared::twins;
 use figures::Figures;
 use finer::{Broad, Film, Found};
 use finish::{Finish, Finished, finish};
-use joint::figure::claims::Claims;
-use joint::lead::Lead;
 use joint::shadow::Memory;
 use mechanisms::{Mechanism, Mechanisms};
-use mend::{Extended, Guide, Known};
+use mend::{Extended, Guide};
 use outward::plan::Portion;
 use pooled::Pooled;
-use pooling::{corrected_pools, mended_pools, plain_pools};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, Span};
 use stage::Kit;
 use std::collections::{BTreeMap, BTreeSet};
@@ -117,11 +113,9 @@ pub struct Rototoon {
     choices: chosen::Memory,
     untouched: Untouched,
     outward: outward::plan::Memory,
+    holds: holds::Memory,
     mechanisms: Mechanisms,
 }
-
-/// The pools of a job without and with its corrections, and whether any of them was computed in this run.
-type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
 
 /// Pools with the hypotheses from a joint choice, and their sources.
 #[derive(Clone)]
@@ -158,7 +152,7 @@ impl SceneSolver for Rototoon {
             result?;
         }
         if self.mechanisms.has(Mechanism::Holds) {
-            holds::unite(self.kit(&looks, progress), scene, &mut tracking)?;
+            self.holds = holds::unite(self.kit(&looks, progress), scene, &mut tracking, &self.holds)?;
         }
         twins::doubt(scene, &mut tracking.parts);
         Ok(tracking)
@@ -328,89 +322,6 @@ impl Rototoon {
         self.shadows.keep_only(pooled.map(|pooled| &pooled.pools));
     }
 
-    /// The pools of all tasks, and whether they were computed in this run.
-    fn pool_all(
-        &mut self,
-        scene: &Scene,
-        tasks: &[Task],
-        frames: &Looks,
-        shared: &SharedProgress,
-    ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
-        let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
-        // The contours of nearer parts on a task's keys must be known, also where these parts are between two keys of
-        // their own.
-        let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
-        let waits = |task: &Task, other: &Task| {
-            scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
-        };
-        while let Some(wave) = next_wave(tasks, |t| done[t].is_some(), waits) {
-            let jobs: Vec<Job> = wave
-                .iter()
-                .map(|&t| job(scene, tasks[t], occluders(scene, tasks, |o| Some(&done[o].as_ref()?.0), tasks[t])))
-                .collect();
-            let results: Vec<Result<FoundPools, TrackError>> = wave
-                .par_iter()
-                .with_max_len(1)
-                .zip(&jobs)
-                .map(|(&t, job)| {
-                    let progress = shared.of(t);
-                    let kit = self.kit(frames, &progress);
-                    let result = self.pool(kit, job)?;
-                    kit.progress.report("Tracking", 0.8)?;
-                    Ok(result)
-                })
-                .collect();
-            for (t, result) in wave.into_iter().zip(results) {
-                let (plain, with_corrections, solved) = result?;
-                let key = plain.key();
-                self.plain.insert(key.clone(), plain);
-                self.corrected.insert(key, with_corrections.clone());
-                done[t] = Some((with_corrections, solved));
-            }
-        }
-        Ok(done.into_iter().flatten().unzip())
-    }
-
-    /// The pools of a stretch's members with the hypotheses that their joint choice adds.
-    fn mend_all(
-        &mut self,
-        stretch: &[usize],
-        pooled: &[Arc<Pooled>],
-        (paths, leads, claims): (&[Vec<usize>], &[Vec<Lead>], Option<&Claims>),
-        frames: &Looks,
-        shared: &SharedProgress,
-    ) -> Result<Vec<Arc<Pooled>>, TrackError> {
-        let members: Vec<usize> = (0..stretch.len()).collect();
-        let mended: Vec<Result<Mended, TrackError>> = members
-            .par_iter()
-            .with_max_len(1)
-            .map(|&m| {
-                let source = &pooled[m];
-                let key = source.key();
-                let guide = Guide::new(source, &paths[m], &leads[m], claims);
-                let known = self.mended.get(&key);
-                let unmoved = known.filter(|known| Arc::ptr_eq(&known.source, source));
-                if let Some(known) = unmoved.filter(|known| known.guide == guide) {
-                    return Ok(known.clone());
-                }
-                let progress = shared.of(stretch[m]);
-                let kit = self.kit(frames, &progress);
-                let before = known.map(|Mended { source, guide, extended, .. }| Known { source, guide, extended });
-                let (result, extended) = mended_pools(kit, source, &guide, before)?;
-                let unchanged = unmoved.filter(|known| Arc::ptr_eq(&known.result.pools, &extended.pools));
-                let result = unchanged.map_or_else(|| Arc::new(result), |known| known.result.clone());
-                Ok(Mended { source: source.clone(), guide, extended, result })
-            })
-            .collect();
-        let mut results = Vec::new();
-        for mended in mended {
-            let mended = mended?;
-            results.push(mended.result.clone());
-            self.mended.insert(mended.source.key(), mended);
-        }
-        Ok(results)
-    }
-
     /// Finds the contours of a stretch's members on their chosen paths. Returns which were found in this run: a result with
     /// the same pools and the same plan as before is kept.
     fn finish_all(
@@ -446,27 +357,6 @@ impl Rototoon {
         }
         Ok(new)
     }
-
-    /// The pools of a job without and with its corrections, and whether any of them was computed in this run.
-    fn pool(&self, kit: Kit, job: &Job) -> Result<FoundPools, TrackError> {
-        let key = (job.name.clone(), job.span);
-        let bare = Job { corrections: BTreeMap::new(), ..job.clone() };
-        let (plain, mut solved) = match self.plain.get(&key) {
-            Some(known) if known.job == bare => (known.clone(), false),
-            _ => (Arc::new(plain_pools(kit, bare)?), true),
-        };
-        if job.corrections.is_empty() || plain.models.is_none() {
-            return Ok((plain.clone(), plain, solved));
-        }
-        let with_corrections = match self.corrected.get(&key) {
-            Some(known) if known.job == *job => known.clone(),
-            _ => {
-                solved = true;
-                Arc::new(corrected_pools(kit, job, &plain)?)
-            }
-        };
-        Ok((plain, with_corrections, solved))
-    }
 }
 
 /// Groups of tasks whose spans share more than a key frame, directly or through others, in the order of time.
@@ -485,24 +375,4 @@ fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
         }
     }
     stretches.into_iter().map(|(_, members)| members).collect()
-}
-
-/// The contours that hide a task's part on its keys. A nearer part between two keys of its own is where its own choice
-/// puts it.
-fn occluders<'a>(
-    scene: &Scene,
-    tasks: &[Task],
-    pooled: impl Fn(usize) -> Option<&'a Pooled>,
-    task: Task,
-) -> Vec<Vec<Vec<Point>>> {
-    let Task { span, depth, .. } = task;
-    let on = |frame: FrameNumber| {
-        nearer_contours(scene, tasks, (depth, frame), |o| {
-            Some(pooled(o)?.own_points((frame - tasks[o].span.first) as usize))
-        })
-    };
-    let mut occluders = vec![Vec::new(); span.len()];
-    occluders[0] = on(span.first);
-    occluders[span.len() - 1] = on(span.last);
-    occluders
 }

@@ -96,3 +96,19 @@ fn a_drawing_that_goes_with_the_camera_keeps_its_contour() {
         assert!(moved[0].distance(pan) < 0.15, "{part}: {}", moved[0]);
     }
 }
+
+#[test]
+fn what_was_compared_before_a_pin_is_what_a_new_tracker_finds_after_it() {
+    let film = Panned { drawn: limb_and_ball(), pan: Point::new(3.3, 0.4), carries: true };
+    let mut scene = film.drawn.scene(film.parts());
+    let mut tracker = Tracker::new(TrackOptions::default());
+    let first = tracker.track(&scene, &film, &Silent).unwrap();
+    let pinned = first.parts[0].tracks[&2][0] + Point::new(3.0, 2.0);
+    scene.parts[0].pins.entry(2).or_default().insert(0, pinned);
+    let again = tracker.track(&scene, &film, &Silent).unwrap();
+    let anew = Tracker::new(TrackOptions::default()).track(&scene, &film, &Silent).unwrap();
+    assert_eq!(again, anew);
+    assert_ne!(again.parts[0], first.parts[0], "the pin moves its part");
+    scene.parts[0].pins.clear();
+    assert_eq!(tracker.track(&scene, &film, &Silent).unwrap(), first, "without the pin all is as before");
+}

@@ -38,7 +38,8 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use transform::Transform;
-use words::{Item, items, place, wrong};
+use words::{Item, items};
+pub(super) use words::{place, wrong};
 
 /// Flag of a curve: handles are relative to their points.
 const RELATIVE_HANDLES: u32 = 8192;
