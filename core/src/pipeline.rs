@@ -5,6 +5,7 @@
 //! or when cancelled, the document is unchanged.
 
 mod bare;
+mod beyond;
 mod breakdown;
 mod check;
 mod contrast;
@@ -22,6 +23,7 @@ mod render;
 mod report;
 mod reshape;
 mod shapeless;
+mod shapes;
 mod sheet;
 mod sheet_drawn;
 mod sheet_marks;
@@ -33,6 +35,7 @@ mod tween;
 mod unseen;
 mod untracked;
 
+pub use beyond::{beyond, empty};
 pub use breakdown::{Suggestion, suggest_breakdown};
 pub use check::{check, drawing_problems};
 pub use doubts::{Doubt, doubts, traced_lines};
@@ -47,6 +50,7 @@ pub use render::render;
 pub use report::{Counts, PartReport, Report, Together, Weakest};
 pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
 pub use shapeless::nothing_for;
+pub use shapes::{Imported, ShapeFormat, import_shifted};
 pub use sheet::sheet;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::{TraceMemory, TraceOptions, trace, trace_drawings};
@@ -57,7 +61,6 @@ pub use untracked::untracked;
 use crate::export::{self, SvgOptions, svg_with_drawn};
 use crate::fit;
 use crate::geometry::Point;
-use crate::import::{self, ImportError, Shapes};
 use crate::pictures::Sequence;
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
@@ -271,79 +274,6 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
     let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
     let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(varying).collect();
     (!told.is_empty()).then(|| told.join("; "))
-}
-
-/// A format of a file with shapes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ShapeFormat {
-    /// SVG. Shapes without animation get their key on the frame `still`.
-    Svg {
-        /// A frame of the footage.
-        still: FrameNumber,
-    },
-    /// Silhouette shapes.
-    Silhouette,
-    /// A script of Nuke. Shapes without animation get their key on the frame `still`.
-    Nuke {
-        /// A frame of the footage.
-        still: FrameNumber,
-    },
-    /// A project of Natron. Shapes without animation get their key on the frame `still`.
-    Natron {
-        /// A frame of the footage.
-        still: FrameNumber,
-    },
-}
-
-/// Puts the shapes in the text of a file into the document as keys of parts. Returns a warning for each element that
-/// was left out.
-///
-/// # Errors
-///
-/// An [`ImportError`]; the document is then unchanged.
-pub fn import(document: &mut Document, text: &str, format: ShapeFormat) -> Result<Vec<String>, ImportError> {
-    let found = shapes(&document.scene.footage, text, format)?;
-    import::into_scene(&mut document.scene, found.shapes);
-    Ok(found.warnings)
-}
-
-/// As [`import()`], for a file whose frames are those of the document plus `offset`. `still` is a frame of the document.
-///
-/// # Errors
-///
-/// [`PipelineError::Option`] for an offset that is too large, and [`PipelineError::Import`]; the document is then unchanged.
-pub fn import_shifted(
-    document: &mut Document,
-    text: &str,
-    format: ShapeFormat,
-    offset: FrameNumber,
-) -> Result<Vec<String>, PipelineError> {
-    let footage = excerpt::shifted(&document.scene.footage, offset)?;
-    let moved = |still: FrameNumber| still.saturating_add(offset);
-    let format = match format {
-        ShapeFormat::Svg { still } => ShapeFormat::Svg { still: moved(still) },
-        ShapeFormat::Silhouette => ShapeFormat::Silhouette,
-        ShapeFormat::Nuke { still } => ShapeFormat::Nuke { still: moved(still) },
-        ShapeFormat::Natron { still } => ShapeFormat::Natron { still: moved(still) },
-    };
-    let mut found = shapes(&footage, text, format)?;
-    for shape in &mut found.shapes {
-        let keys = std::mem::take(&mut shape.keys).into_iter();
-        shape.keys = keys.map(|(frame, points)| (frame.saturating_sub(offset), points)).collect();
-        shape.absent.iter_mut().flatten().for_each(|frame| *frame = frame.saturating_sub(offset));
-    }
-    import::into_scene(&mut document.scene, found.shapes);
-    Ok(found.warnings)
-}
-
-/// The shapes of a file.
-fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
-    match format {
-        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still),
-        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage),
-        ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
-        ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
-    }
 }
 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names

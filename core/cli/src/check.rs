@@ -50,6 +50,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     if problems.error_count() > 0 {
         return Err(Failure::Reported);
     }
+    if let Some(beyond) = pipeline::beyond(&document.scene) {
+        line("note", &format!("{}: {beyond}", path.display()));
+    }
     if given.get_flag("drawings") {
         let drawings = progress::run(arguments::threads(given), |bar| Ok(pipeline::held(&document, &home, bar)?))?;
         line("note", &format!("{}: {}", path.display(), listed(&drawings)));

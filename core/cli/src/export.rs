@@ -78,11 +78,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     inputs.file(from).check(to)?;
     let asked = excerpt(given);
-    let document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
+    let whole = document.scene.footage.clone();
+    let mut document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
         let chosen =
             if asked.parts.is_some() || asked.frames.is_some() { "of the parts and frames asked for: " } else { "" };
         return Err(Failure::Other(format!("{}: {chosen}{nothing}", from.display())));
+    }
+    if extension == "jsx" {
+        // Its masks go to the layer of the whole footage.
+        document.scene.footage = whole;
     }
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;

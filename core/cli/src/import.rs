@@ -13,12 +13,12 @@ use std::path::PathBuf;
 /// The subcommand.
 pub fn command() -> Command {
     Command::new("import")
-        .about("Adds shapes of Nuke, Natron, Silhouette or SVG to a document, as keys of parts")
+        .about("Adds shapes of Nuke, Natron, Silhouette, Fusion or SVG to a document, as keys of parts")
         .arg(arguments::project())
         .arg(
             Arg::new("shapes")
                 .value_name("SHAPES")
-                .help("FILE.nk (Nuke), FILE.ntp (Natron), FILE.fxs (Silhouette) or FILE.svg; a shape becomes the part of the same name")
+                .help("FILE.nk (Nuke), FILE.ntp (Natron), FILE.fxs (Silhouette), FILE.setting or FILE.comp (Fusion), or FILE.svg; a shape changes the part of the same name where it is another one")
                 .required(true)
                 .value_parser(value_parser!(PathBuf)),
         )
@@ -49,15 +49,10 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let from = from.display();
         return Err(Failure::Use(format!("{from}: --frame: found {still}, expected a frame of the footage, {own}")));
     }
-    let format = match extension.as_str() {
-        "nk" => ShapeFormat::Nuke { still },
-        "ntp" => ShapeFormat::Natron { still },
-        "fxs" => ShapeFormat::Silhouette,
-        "svg" => ShapeFormat::Svg { still },
-        _ => {
-            let message = format!("{}: expected a name that ends in .nk, .ntp, .fxs or .svg", shapes.display());
-            return Err(Failure::Use(message));
-        }
+    let Some(format) = ShapeFormat::of(&extension, still) else {
+        let message =
+            format!("{}: expected a name that ends in .nk, .ntp, .fxs, .setting, .comp or .svg", shapes.display());
+        return Err(Failure::Use(message));
     };
     let offset = arguments::offset(given);
     if offset != 0 && matches!(format, ShapeFormat::Svg { .. }) {
@@ -67,16 +62,20 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.display()));
     let text = file::text(shapes).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
-    let warnings = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| match error {
+    let imported = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| match error {
         PipelineError::Import(ImportError::Beyond(_)) => {
             failed(&format!("{error}; --frame-offset says how far the file's frames are ahead of the document's"))
         }
         PipelineError::Import(error) => failed(&error),
         other => Failure::of(other, from),
     })?;
-    for warning in warnings {
+    for warning in &imported.warnings {
         line("warning", &format!("{}: {warning}", shapes.display()));
     }
     project::inputs(&document, from).file(shapes).check(to)?;
-    project::save(document, from, to)
+    project::save(document, from, to)?;
+    if let Some(told) = imported.told() {
+        line("note", &format!("{}: {told}", shapes.display()));
+    }
+    Ok(())
 }

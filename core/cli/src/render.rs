@@ -97,7 +97,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     })?;
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
     let outdated = pipeline::outdated(&document.scene);
-    lacking.iter().chain(&outdated).for_each(|warning| line("warning", &format!("{output}: {warning}")));
+    let empty = pipeline::empty(&document, &job);
+    lacking.iter().chain(&outdated).chain(&empty).for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }
 

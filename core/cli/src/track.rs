@@ -52,13 +52,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         say_ends(&document.scene, &tracking);
         Ok(document)
     })?;
-    let report = Report::of(&document.scene);
+    let (report, beyond) = (Report::of(&document.scene), pipeline::beyond(&document.scene));
     project::save(document, from, to)?;
     if let Some(path) = written {
         let json = serde_json::to_vec_pretty(&report).map_err(|error| Failure::Other(error.to_string()))?;
         write_whole(path, &json)?;
     }
-    report.lines().iter().for_each(|text| line("note", text));
+    report.lines().iter().chain(&beyond).for_each(|text| line("note", text));
     Ok(())
 }
 

@@ -25,8 +25,8 @@ use std::collections::BTreeSet;
 pub struct FillClick {
     /// The place in pixels.
     pub at: Point,
-    /// The colour, sRGB-encoded, 0 to 1.
-    pub colour: Colour,
+    /// The colour, sRGB-encoded, 0 to 1. `None` says that the region stays without paint.
+    pub colour: Option<Colour>,
 }
 
 /// The clicks of one frame.
@@ -43,7 +43,7 @@ impl FillClicks {
     pub fn to_json(&self) -> Value {
         let click = |click: &FillClick| {
             let at = click.at.to_array().map(|value| rounded(value, DECIMALS));
-            json!({"at": at, "colour": written_colour(click.colour)})
+            json!({"at": at, "colour": click.colour.map(written_colour)})
         };
         json!({"frame": self.frame, "regions": self.clicks.iter().map(click).collect::<Vec<_>>()})
     }
@@ -132,7 +132,11 @@ impl Document {
 fn click(value: &Value, place: &str) -> Result<FillClick, FieldError> {
     let fields = object(value, place)?;
     let at = point(fields.get("at"), &format!("{place}.at"))?;
-    Ok(FillClick { at, colour: colour(fields.get("colour"), &format!("{place}.colour"), share)? })
+    let colour = match fields.get("colour") {
+        Some(Value::Null) => None,
+        given => Some(colour(given, &format!("{place}.colour"), share)?),
+    };
+    Ok(FillClick { at, colour })
 }
 
 fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {

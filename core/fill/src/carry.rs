@@ -48,10 +48,10 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
         others.iter_mut().for_each(|said| said.silent.clone_from(&corrected));
     }
     let last = known.last()?;
-    let palette = last.paint.colours.first()?.len();
+    let palette = last.paint.blank;
     let mut paint = Paint::nothing(page.regions.count, palette);
     for j in 1..=page.regions.count {
-        if let Some(row) = probabilities(&known, j, palette) {
+        if let Some(row) = probabilities(&known, j, palette + 1) {
             paint.colours[j] = row;
         }
     }
@@ -79,7 +79,7 @@ fn corrected(last: &Said) -> Vec<f32> {
     last.relaxed.sure.iter().map(|row| sharp(share(row))).collect()
 }
 
-/// The probability of each colour of a region. `None` if no source has a colour for it.
+/// The probability of each colour of a region, no paint being one. `None` if no source has a colour for it.
 fn probabilities(known: &[Said], region: usize, palette: usize) -> Option<Vec<f32>> {
     let loud = |said: &Said| 1.0 - said.silent[region];
     let sum = |c: usize| known.iter().map(|said| loud(said) * said.colours[region][c]).sum::<f32>();
@@ -138,7 +138,7 @@ fn weighted(row: &[f32], colours: &Table) -> Vec<f32> {
 fn number(paint: &mut Paint, source: &Paint, all: &Table, layout: &Layout, next: &mut usize) {
     let mut pairs: Vec<(f32, usize, usize)> = Vec::new();
     for j in 1..layout.figures.len() {
-        let Some(colour) = paint.colour(j) else { continue };
+        let Some(colour) = paint.painted(j) else { continue };
         let same = |i: &usize| source.colour(*i) == Some(colour) && source.tracks[*i].is_some();
         let best = (1..all[j].len()).filter(same).max_by(|&a, &b| all[j][a].total_cmp(&all[j][b]).then(b.cmp(&a)));
         if let Some(i) = best {
@@ -154,7 +154,7 @@ fn number(paint: &mut Paint, source: &Paint, all: &Table, layout: &Layout, next:
         }
     }
     for j in 1..layout.figures.len() {
-        if paint.tracks[j].is_none() && paint.colour(j).is_some() {
+        if paint.tracks[j].is_none() && paint.painted(j).is_some() {
             paint.tracks[j] = Some(*next);
             *next += 1;
         }

@@ -51,7 +51,7 @@
 //! // Paper, square and disc.
 //! let clicks = [(5.0, 5.0), (30.0, 30.0), (60.0, 60.0)];
 //! let clicks: Vec<Click> =
-//!     clicks.iter().enumerate().map(|(colour, &(x, y))| Click { at: Point::new(x, y), colour }).collect();
+//!     clicks.iter().enumerate().map(|(colour, &(x, y))| Click { at: Point::new(x, y), colour: Some(colour) }).collect();
 //!
 //! let (mut first, mut second, mut next) = (page(0.0), page(8.0), 0);
 //! let (paint, missed) = first.painted(&clicks, 3, &mut next);

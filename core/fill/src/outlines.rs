@@ -42,7 +42,7 @@ pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
     let regions = &page.regions;
     let under = (UNDER * regions.unit).max(1.0) as u32;
     let painted: Vec<(usize, usize, usize)> =
-        (1..=regions.count).filter_map(|region| Some((region, paint.colour(region)?, paint.tracks[region]?))).collect();
+        (1..=regions.count).filter_map(|region| Some((region, paint.painted(region)?, paint.tracks[region]?))).collect();
     let boxes = boxes(&regions.nearest, regions.count);
     let mut fills: Vec<(f64, Fill)> = painted
         .into_par_iter()
@@ -139,7 +139,7 @@ mod tests {
         let picture = Raster::from_fn(540, 540, |x, y| if ink(x, y) { [0.0; 3] } else { [1.0; 3] });
         let mut page = Page::new(Arc::new(picture), &Options::default());
         let clicks = [Point::new(3.0, 3.0), middle];
-        let clicks: Vec<Click> = clicks.iter().enumerate().map(|(colour, &at)| Click { at, colour }).collect();
+        let clicks: Vec<Click> = clicks.iter().enumerate().map(|(colour, &at)| Click { at, colour: Some(colour) }).collect();
         let (paint, _) = page.painted(&clicks, 2, &mut 0);
         let painted = fills(&page, &paint);
         let [paper, disc] = painted.as_slice() else { panic!("{painted:?}") };
@@ -165,7 +165,7 @@ mod tests {
         let angles = [0.5, 1.5, 2.6, 3.6, 4.7, 5.7];
         let at = |distance: f64| angles.map(|angle| middle + distance * Point::from_angle(angle));
         let clicks = at(60.0).into_iter().chain(at(200.0)).enumerate();
-        let clicks: Vec<Click> = clicks.map(|(colour, at)| Click { at, colour }).collect();
+        let clicks: Vec<Click> = clicks.map(|(colour, at)| Click { at, colour: Some(colour) }).collect();
         let (paint, missed) = page.painted(&clicks, 12, &mut 0);
         let painted = fills(&page, &paint);
         assert_eq!((painted.len(), missed.len()), (12, 0));

@@ -23,15 +23,19 @@ pub struct Page {
 pub struct Click {
     /// The place.
     pub at: Point,
-    /// The colour's number.
-    pub colour: usize,
+    /// The colour's number. `None` says that the region stays without paint.
+    pub colour: Option<usize>,
 }
 
 /// The colours of a page's regions.
+///
+/// *No paint* is a colour too, the one behind the palette: paper that shows between the limbs of a figure is followed like any other region.
 #[derive(Clone, Debug)]
 pub struct Paint {
-    /// For each region the probability of each colour of the palette. The sum is 1, or 0 where nothing is painted.
+    /// For each region the probability of each colour of the palette, and of no paint. The sum is 1, or 0 where nothing is known.
     pub(crate) colours: Table,
+    /// The number of colours in the palette, and so the number of the colour *no paint*.
+    pub(crate) blank: usize,
     /// For each region its number on all drawings.
     pub(crate) tracks: Vec<Option<usize>>,
     /// For each region the probability that its most probable colour is right.
@@ -77,22 +81,23 @@ impl Page {
     /// Clicks into a page whose regions have colours already. What was not clicked stays. The page must have been
     /// [split](Self::split) by the clicks before it was painted. A region whose colour changes gets a new number.
     pub fn clicked(&self, mut paint: Paint, clicks: &[Click], next: &mut usize) -> (Paint, Vec<usize>) {
-        let palette = paint.colours[0].len();
+        let blank = paint.blank;
         let mut missed = Vec::new();
         let mut own = BTreeSet::new();
         for (k, click) in clicks.iter().enumerate() {
-            let Some(region) = self.regions.at(click.at).filter(|_| click.colour < palette) else {
+            let Some(region) = self.regions.at(click.at).filter(|_| click.colour.is_none_or(|own| own < blank)) else {
                 missed.push(k);
                 continue;
             };
-            if paint.tracks[region].is_none() || paint.colour(region) != Some(click.colour) {
-                paint.tracks[region] = Some(*next);
-                *next += 1;
+            match click.colour {
+                None => paint.tracks[region] = None,
+                Some(_) if paint.tracks[region].is_some() && paint.colour(region) == click.colour => {}
+                Some(_) => {
+                    paint.tracks[region] = Some(*next);
+                    *next += 1;
+                }
             }
-            paint.colours[region].fill(0.0);
-            paint.colours[region][click.colour] = 1.0;
-            paint.confidence[region] = 1.0;
-            paint.evidence[region] = None;
+            paint.give(region, click.colour.unwrap_or(blank));
             paint.corrected[region] = 1.0;
             own.insert(region);
         }
@@ -100,10 +105,25 @@ impl Page {
         (paint, missed)
     }
 
+    /// Leaves the regions at the edge of the picture without paint that have no colour: on a drawing that is painted otherwise, they are the
+    /// paper around it, and stay so on other drawings.
+    pub fn leave_paper(&self, paint: &mut Paint) {
+        let (width, height) = (self.regions.inside.width(), self.regions.inside.height());
+        let rows = [0, height.saturating_sub(1)].into_iter().flat_map(|y| (0..width).map(move |x| (x, y)));
+        let columns = [0, width.saturating_sub(1)].into_iter().flat_map(|x| (0..height).map(move |y| (x, y)));
+        let outer: BTreeSet<usize> = rows.chain(columns).map(|(x, y)| self.regions.inside.get(x, y) as usize).collect();
+        for region in outer.into_iter().filter(|&region| region > 0) {
+            if paint.colour(region).is_none() {
+                paint.give(region, paint.blank);
+            }
+        }
+    }
+
     /// The clicks that lie in a region which a later click has given another colour: no line was found between the two.
     pub fn overruled(&self, paint: &Paint, clicks: &[Click]) -> Vec<usize> {
         let other = |click: &Click| {
-            self.regions.at(click.at).is_some_and(|region| paint.colour(region).is_some_and(|own| own != click.colour))
+            let colour = click.colour.unwrap_or(paint.blank);
+            self.regions.at(click.at).is_some_and(|region| paint.colour(region).is_some_and(|own| own != colour))
         };
         (0..clicks.len()).filter(|&k| other(&clicks[k])).collect()
     }
@@ -140,13 +160,22 @@ impl Paint {
     /// Nothing is painted.
     pub(crate) fn nothing(regions: usize, palette: usize) -> Self {
         Self {
-            colours: vec![vec![0.0; palette]; regions + 1],
+            colours: vec![vec![0.0; palette + 1]; regions + 1],
+            blank: palette,
             tracks: vec![None; regions + 1],
             confidence: vec![0.0; regions + 1],
             evidence: vec![None; regions + 1],
             clicked: 0.0,
             corrected: vec![0.0; regions + 1],
         }
+    }
+
+    /// Gives a region a colour that the artist has said.
+    fn give(&mut self, region: usize, colour: usize) {
+        self.colours[region].fill(0.0);
+        self.colours[region][colour] = 1.0;
+        self.confidence[region] = 1.0;
+        self.evidence[region] = None;
     }
 
     /// From here on the clicks are no corrections of what was carried: the drawing is one from which others are painted.
@@ -169,8 +198,13 @@ impl Paint {
         self.evidence[region].as_ref()
     }
 
-    /// The most probable colour of a region.
-    pub fn colour(&self, region: usize) -> Option<usize> {
+    /// The most probable colour of a region, if it is paint.
+    pub fn painted(&self, region: usize) -> Option<usize> {
+        self.colour(region).filter(|&colour| colour < self.blank)
+    }
+
+    /// The most probable colour of a region, which may be that of no paint.
+    pub(crate) fn colour(&self, region: usize) -> Option<usize> {
         let row = &self.colours[region];
         // Of equal ones the first is taken.
         let best = (0..row.len()).rev().max_by(|&a, &b| row[a].total_cmp(&row[b]))?;
@@ -195,7 +229,7 @@ mod tests {
 
     #[test]
     fn clicks_of_two_colours_split_a_region_that_leaks() {
-        let click = |x: f64, colour: usize| Click { at: Point::new(x, 30.0), colour };
+        let click = |x: f64, colour: usize| Click { at: Point::new(x, 30.0), colour: Some(colour) };
         let mut page = page();
         let whole = page.regions();
         let mut next = 5;
@@ -208,15 +242,29 @@ mod tests {
     #[test]
     fn clicks_outside_of_the_picture_are_told() {
         let mut page = page();
-        let (_, missed) = page.painted(&[Click { at: Point::new(500.0, 3.0), colour: 0 }], 1, &mut 0);
+        let (_, missed) = page.painted(&[Click { at: Point::new(500.0, 3.0), colour: Some(0) }], 1, &mut 0);
         assert_eq!(missed, [0]);
+    }
+
+    #[test]
+    fn paper_around_a_painted_drawing_has_no_paint() {
+        let click = |x: f64, colour| Click { at: Point::new(x, 30.0), colour };
+        let mut page = page();
+        let mut next = 0;
+        let (mut paint, _) = page.painted(&[click(40.0, Some(1)), click(80.0, None)], 2, &mut next);
+        let at = |x: f64| page.regions.at(Point::new(x, 30.0)).unwrap();
+        assert_eq!((paint.colour(at(5.0)), next), (None, 1));
+        page.leave_paper(&mut paint);
+        assert_eq!([5.0, 40.0, 80.0].map(|x| paint.colour(at(x))), [Some(2), Some(1), Some(2)]);
+        assert_eq!([5.0, 40.0, 80.0].map(|x| paint.painted(at(x))), [None, Some(1), None]);
+        assert_eq!([5.0, 40.0, 80.0].map(|x| paint.tracks[at(x)].is_some()), [false, true, false]);
     }
 
     #[test]
     fn of_equal_colours_the_first_is_taken() {
         let mut paint = Paint::nothing(1, 3);
         assert_eq!(paint.colour(1), None);
-        paint.colours[1] = vec![0.2, 0.4, 0.4];
+        paint.colours[1] = vec![0.2, 0.4, 0.4, 0.0];
         assert_eq!(paint.colour(1), Some(1));
     }
 }

@@ -170,7 +170,11 @@ mod tests {
                 (export::silhouette(&out.scene, 2.0), ShapeFormat::Silhouette),
             ] {
                 let mut found = document();
-                assert_eq!(import_shifted(&mut found, &text, format, offset).unwrap(), [""; 0], "{offset} {format:?}");
+                assert_eq!(
+                    import_shifted(&mut found, &text, format, offset).unwrap().warnings,
+                    [""; 0],
+                    "{offset} {format:?}"
+                );
                 assert_eq!((found.scene.footage.first, found.scene.footage.last), (1, 9));
                 let mut plain = document();
                 let own = excerpt(&document(), &Excerpt::default()).unwrap();

@@ -5,6 +5,9 @@
 //! one, by the model drawing, and by the next drawing with as many clicks. On a frame with fewer clicks, these overrule what was carried there, and
 //! about what they correct the artist's other drawings are silent from there on ([`carry()`]): so a mistake is mended by one click, before and after
 //! the model drawing, and nothing else changes.
+//!
+//! What the artist leaves without paint at the edge of a model drawing is the paper around it, and stays without paint on the other drawings. Other
+//! regions without a click are guessed there. A click without a colour says that a region has no paint: such regions are followed like painted ones.
 
 #[cfg(test)]
 mod tests;
@@ -147,9 +150,9 @@ pub(super) fn fills_to_export(document: &Document) -> Result<Vec<SvgFill>, Pipel
 /// All colours, each once, in the order in which they come.
 fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Colour> {
     let mut palette: Vec<Colour> = Vec::new();
-    for click in clicks.iter().flat_map(|own| &own.1.clicks) {
-        if !palette.contains(&click.colour) {
-            palette.push(click.colour);
+    for colour in clicks.iter().flat_map(|own| &own.1.clicks).filter_map(|click| click.colour) {
+        if !palette.contains(&colour) {
+            palette.push(colour);
         }
     }
     palette
@@ -256,7 +259,10 @@ impl Painting<'_> {
     fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, InVain), PipelineError> {
         let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
-        let (paint, missed) = page.painted(&own, self.palette.len(), &mut self.next);
+        let (mut paint, missed) = page.painted(&own, self.palette.len(), &mut self.next);
+        if paint.clicked() >= WHOLE {
+            page.leave_paper(&mut paint);
+        }
         let in_vain = InVain { missed, overruled: page.overruled(&paint, &own) };
         Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, in_vain))
     }
@@ -315,8 +321,8 @@ impl Painting<'_> {
     }
 
     fn clicks(&self, clicks: &FillClicks) -> Vec<Click> {
-        let number = |colour: &Colour| self.palette.iter().position(|own| own == colour).unwrap_or_default();
-        clicks.clicks.iter().map(|click| Click { at: click.at, colour: number(&click.colour) }).collect()
+        let number = |colour: Colour| self.palette.iter().position(|own| *own == colour);
+        clicks.clicks.iter().map(|click| Click { at: click.at, colour: click.colour.and_then(number) }).collect()
     }
 
     fn miss(&mut self, clicks: &(usize, FillClicks), in_vain: &InVain) {

@@ -103,7 +103,7 @@ fn same(found: &Keys, expected: &Keys, tolerance: f64) {
 fn shapes_of_silhouette_nuke_and_natron_are_the_same_after_export_and_import() {
     let folder = Folder::new();
     let (empty, out) = (folder.document("empty.json", json!([])), folder.path("o.json"));
-    for name in ["a.fxs", "a.nk", "a.ntp"] {
+    for name in ["a.fxs", "a.nk", "a.ntp", "a.setting"] {
         let shapes = folder.path(name);
         run(&["export", text(&folder.captured()), "-o", text(&shapes)], 0);
         assert_eq!(run(&["import", text(&empty), text(&shapes), "-o", text(&out)], 0), "");
@@ -142,13 +142,15 @@ fn svg_shapes_are_the_same_after_export_and_import() {
 fn a_shape_replaces_the_part_of_its_name() {
     let folder = Folder::new();
     let (shapes, captured) = (folder.path("a.svg"), folder.captured());
-    let still = "<path id=\"triangle\" d=\"M1 2h8v9z\"/><path id=\"new\" d=\"M1 2h8\"/>";
+    let still = "<path id=\"triangle\" d=\"M1 2h8v9h-8z\"/><path id=\"new\" d=\"M1 2h8\"/>";
     fs::write(&shapes, format!("<svg viewBox=\"0 0 32 24\">{still}\n<text>x</text></svg>")).unwrap();
     let said = run(&["import", text(&captured), text(&shapes), "-o", text(&captured), "--frame", "3"], 0);
     assert!(said.starts_with("warning: ") && said.contains("a.svg: line 2, column 1: <text> has no outline"), "{said}");
     let found = parts(&captured);
     assert_eq!(found.iter().map(|part| part.0.as_str()).collect::<Vec<_>>(), ["triangle", "near <line>", "new"]);
-    same(&found[0].2, &[(3, vec![[2.0, 4.0], [18.0, 4.0], [18.0, 22.0]])].into(), 1e-12);
+    same(&found[0].2, &[(3, vec![[2.0, 4.0], [18.0, 4.0], [18.0, 22.0], [2.0, 22.0]])].into(), 1e-12);
+    let told = r#"a.svg: replaced with all keys and corrections "triangle"; new "new""#;
+    assert!(said.contains(told), "{said}");
     let document: Value = serde_json::from_str(&fs::read_to_string(&captured).unwrap()).unwrap();
     assert_eq!(document["parts"][1]["tracks"], json!({}));
 }
@@ -178,7 +180,11 @@ fn import_errors_are_named_and_nothing_is_written() {
         (file("cut.fxs", "<Silhouette><Object"), 1, "cut.fxs: found text that is not XML, expected XML: "),
         (file("none.svg", "<svg/>"), 1, "none.svg: found no shape, expected a path"),
         (file("a.nk", "RotoPaint {}"), 1, "a.nk: found no shape, expected a curvegroup of a Roto or RotoPaint node"),
-        (file("a.nk.txt", "RotoPaint {}"), 2, "a.nk.txt: expected a name that ends in .nk, .ntp, .fxs or .svg"),
+        (
+            file("a.nk.txt", "RotoPaint {}"),
+            2,
+            "a.nk.txt: expected a name that ends in .nk, .ntp, .fxs, .setting, .comp or .svg",
+        ),
         (folder.path("gone.svg"), 1, "gone.svg: cannot read the shapes: "),
     ] {
         let said = run(&["import", text(&captured), text(&path), "-o", text(&out)], status);

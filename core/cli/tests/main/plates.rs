@@ -26,7 +26,8 @@ fn what_is_exchanged_with_a_frame_offset_comes_back_with_it() {
         assert_ne!(fs::read(&plain).unwrap(), fs::read(&plate).unwrap());
         let (a, b) = (a.with_extension("json"), b.with_extension("json"));
         good(&["import", text(&document), text(&plain), "-o", text(&a)]);
-        assert_eq!(good(&["import", text(&document), text(&plate), "-o", text(&b), "--frame-offset", "1001"]), "");
+        let said = good(&["import", text(&document), text(&plate), "-o", text(&b), "--frame-offset", "1001"]);
+        assert!(said.ends_with("as before \"far\", \"near\"\n"), "{said}");
         assert_eq!(fs::read(&a).unwrap(), fs::read(&b).unwrap(), "{ending}");
         let said = bad(&["import", text(&document), text(&plate), "-o", text(&b)], 1);
         assert!(said.contains(", expected a frame of the footage, 0 to 6; --frame-offset says"), "{said}");
@@ -45,6 +46,25 @@ fn what_is_exchanged_with_a_frame_offset_comes_back_with_it() {
     assert!(made("0001") == made("1002") && made("0002") == made("1003") && made("0001") != made("0002"));
     let said = bad(&[&words[..], &["--frame-offset", "999999999"]].concat(), 2);
     assert!(said.contains("--frame-offset: found 999999999: frame 6 becomes 1000000005"), "{said}");
+}
+
+#[test]
+fn frames_of_an_excerpt_stay_where_they_were() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    let (file, back, script) = (cartoon.path("some.svg"), cartoon.path("back.json"), cartoon.path("some.jsx"));
+    for to in [&file, &script] {
+        good(&["export", text(&document), "-o", text(to), "--frames", "2-4"]);
+    }
+    let bare = cartoon.document("bare.json", json!([]));
+    good(&["import", text(&bare), text(&file), "-o", text(&back)]);
+    let parts = read(&back)["parts"].as_array().unwrap().clone();
+    let near = parts.iter().find(|part| part["name"] == "near").unwrap();
+    assert_eq!(near["keys"].as_object().unwrap().keys().collect::<Vec<_>>(), ["2", "3", "4"]);
+    let own = &read(&document)["parts"][0]["tracks"]["3"];
+    assert_eq!(&near["keys"]["3"], own);
+    let script = fs::read_to_string(&script).unwrap();
+    assert!(script.contains("\"frames\": 7") && script.contains("[2, [") && !script.contains("[0, ["), "{script}");
 }
 
 #[test]

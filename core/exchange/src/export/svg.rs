@@ -3,7 +3,7 @@
 //! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage. The animation loops, and
 //! browsers play it directly. SMIL can interpolate only paths with the same number of points, so every frame gets the
 //! same number ([`super::outlines`]). A part is hidden on frames without a contour; one that
-//! has nothing but keys says so in an attribute, since an import would take it for absent between them. Parts are drawn in the order of
+//! has nothing but keys says so in an attribute, since an import would take it for absent between them. The root says which frames of the document it shows. Parts are drawn in the order of
 //! depth, far ones first.
 
 use super::names::written;
@@ -109,7 +109,8 @@ pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], o
     let footage = &scene.footage;
     let (width, height) = (footage.width, footage.height);
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" data-first=\"{}\" data-last=\"{}\">\n",
+        footage.first, footage.last
     );
     let line = LINE_WIDTH * (height as f64 / 540.0).max(0.5);
     let _ = writeln!(out, "<g stroke-width=\"{line}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");

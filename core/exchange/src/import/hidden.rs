@@ -45,6 +45,13 @@ pub(super) fn hide(keys: &mut Keys, times: &[[f64; 2]], footage: &Footage) -> Op
     Some(hidden)
 }
 
+/// The frames of the footage on which a shape is shown that is hidden in these times.
+pub(super) fn shown(times: &[[f64; 2]], footage: &Footage) -> Vec<FrameNumber> {
+    let hidden = joined(times, footage);
+    let is_hidden = |frame: &FrameNumber| hidden.iter().any(|[first, last]| (first..=last).contains(&frame));
+    (footage.first..=footage.last).filter(|frame| !is_hidden(frame)).collect()
+}
+
 /// The whole frames of times, in order, within the footage. Those that touch are one.
 fn joined(times: &[[f64; 2]], footage: &Footage) -> Vec<[FrameNumber; 2]> {
     let (first, last) = (f64::from(footage.first), f64::from(footage.last));
@@ -61,8 +68,8 @@ fn joined(times: &[[f64; 2]], footage: &Footage) -> Vec<[FrameNumber; 2]> {
     found
 }
 
-/// The form on a frame.
-fn form(keys: &Keys, frame: FrameNumber) -> Vec<Point> {
+/// The form on a frame: linear between keys, held outside.
+pub(super) fn form(keys: &Keys, frame: FrameNumber) -> Vec<Point> {
     match (keys.range(..=frame).next_back(), keys.range(frame..).next()) {
         (Some((from, a)), Some((to, b))) if from < to => {
             let share = (f64::from(frame) - f64::from(*from)) / (f64::from(*to) - f64::from(*from));

@@ -14,7 +14,9 @@
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
 //! - `hidden`: frames on which a shape is not shown
+//! - `merge`: shapes into a scene, without a change where nothing was changed
 //! - `range`: keys beyond the footage
+//! - `picture`: files of another picture size
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
 
@@ -23,10 +25,12 @@ mod channel;
 pub mod fusion;
 mod hidden;
 mod limits;
+mod merge;
 mod names;
 pub mod natron;
 pub mod nuke;
 pub mod path;
+mod picture;
 #[cfg(test)]
 mod probes;
 pub mod problem;
@@ -39,10 +43,11 @@ mod svg_style;
 mod svg_view;
 
 pub use limits::too_large;
+pub use merge::{Change, Taken, into_scene};
 pub use problem::{ImportError, Place};
 
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
+use rototoon_base::scene::{Falloff, Footage, FrameNumber};
 use std::collections::BTreeMap;
 
 /// A shape as the contour of a part. Every key has the same number of points.
@@ -56,8 +61,10 @@ pub struct Shape {
     pub keys: BTreeMap<FrameNumber, Vec<Point>>,
     /// Frames on which the file does not show it, as the first and the last of each time.
     pub absent: Vec<[FrameNumber; 2]>,
-    /// How its border falls off where it is soft.
-    pub falloff: Falloff,
+    /// How its border falls off where it is soft, if the file says so.
+    pub falloff: Option<Falloff>,
+    /// The frames on which a shape with one key stands still in the file; none if the file is no film.
+    pub held: Vec<FrameNumber>,
 }
 
 impl Shape {
@@ -68,10 +75,11 @@ impl Shape {
         hidden: &[[f64; 2]],
         footage: &Footage,
     ) -> (Self, Option<String>) {
+        let held = if keys.len() == 1 { hidden::shown(hidden, footage) } else { Vec::new() };
         let absent = hidden::hide(&mut keys, hidden, footage);
         let never =
             absent.is_none().then(|| format!("the file shows the shape {name:?} on no frame; its keys are taken"));
-        (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: Falloff::default() }, never)
+        (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: None, held }, never)
     }
 }
 
@@ -84,36 +92,10 @@ pub struct Shapes {
     pub warnings: Vec<String>,
 }
 
-/// Puts shapes into the scene. A shape replaces the part of its name: the depth and the colour stay; the keys, corrections and
-/// results of the part are removed. Other shapes become new parts in their order, nearer than all present parts.
-pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) {
-    let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
-    let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for (place, part) in scene.parts.iter().enumerate() {
-        places.entry(part.name.clone()).or_insert(place);
-    }
-    // Files have no blanks at the ends of names.
-    for (place, part) in scene.parts.iter().enumerate() {
-        places.entry(part.name.trim().to_owned()).or_insert(place);
-    }
-    for Shape { name, closed, keys, absent, falloff } in shapes {
-        if let Some(&place) = places.get(&name) {
-            let part = &mut scene.parts[place];
-            let (name, depth, colour) = (std::mem::take(&mut part.name), part.depth, part.colour);
-            *part = Part { name, closed, keys, absent, falloff, depth, colour, ..Part::default() };
-        } else {
-            places.insert(name.clone(), scene.parts.len());
-            scene.parts.push(Part { name, closed, keys, absent, falloff, depth, ..Part::default() });
-            depth += 1.0;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon_base::scene::Footage;
+    use rototoon_base::scene::{Footage, Part, Scene};
 
     #[test]
     fn a_part_of_the_name_becomes_the_shape_and_others_lie_in_front() {
@@ -122,7 +104,8 @@ mod tests {
             closed: true,
             keys: BTreeMap::from([(2, vec![Point::ONE, Point::X, Point::Y])]),
             absent: Vec::new(),
-            falloff: Falloff::default(),
+            falloff: None,
+            held: Vec::new(),
         };
         let old = Part {
             name: "arm".into(),

@@ -5,7 +5,8 @@
 //! The name of a shape is its `title`, its Inkscape label, or its `id`.
 //!
 //! If a path has a SMIL animation of its `d` (`svg_animation`), as written by the export, its shape has a key wherever
-//! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives.
+//! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives. An export says in
+//! attributes of its root which frames of the document it shows.
 //!
 //! A path that is filled is closed, even if its data do not close it. What is hidden on all frames is left out with a warning
 //! (`svg_style`). A nested `svg` has a view box of its own (`svg_view`).
@@ -34,6 +35,9 @@ use svgtypes::Transform;
 /// Elements whose content is not drawn in place.
 const NOT_DRAWN: [&str; 9] =
     ["defs", "clipPath", "mask", "pattern", "symbol", "marker", "linearGradient", "radialGradient", "filter"];
+/// Attributes of the root of an export: the first and the last frame of the document that it shows.
+const FIRST: &str = "data-first";
+const LAST: &str = "data-last";
 /// Elements that contain others.
 const GROUPS: [&str; 4] = ["g", "a", "svg", "switch"];
 /// Elements that have an outline.
@@ -55,8 +59,11 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     }
     let (view, over) = viewed(root, footage)?;
     let styles = Styles::of(&document);
+    let film = film(root, footage);
+    let still = film.as_ref().map_or(still, |film| still.clamp(film.first, film.last));
     let read = |strokes| {
-        let mut reader = Reader::new(footage, still, strokes, &styles);
+        let mut reader = Reader::new(film.as_ref().unwrap_or(footage), still, strokes, &styles);
+        reader.is_film = film.is_some();
         reader.group(root, &view, over).map(|()| reader)
     };
     let mut reader = read(false)?;
@@ -72,6 +79,13 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     let mut warnings = reader.left_out.lines(text);
     warnings.extend(reader.drawn.told());
     Ok(Shapes { shapes: reader.shapes, warnings })
+}
+
+/// The footage of the frames of which an export is a film. Others begin with the first frame of the footage.
+fn film(root: Node, footage: &Footage) -> Option<Footage> {
+    let frame = |name| root.attribute(name)?.trim().parse::<FrameNumber>().ok();
+    let (first, last) = (frame(FIRST)?.max(footage.first), frame(LAST)?.min(footage.last));
+    (first <= last && frame(FIRST)? == first).then(|| Footage { first, last, ..footage.clone() })
 }
 
 /// How many elements of an export are left out.
@@ -105,6 +119,8 @@ struct Reader<'a> {
     left_out: LeftOut,
     /// Whether strokes of an export are shapes.
     strokes: bool,
+    /// Whether the document says which frames it shows.
+    is_film: bool,
     drawn: Drawn,
 }
 
@@ -119,6 +135,7 @@ impl<'a> Reader<'a> {
             points: Points::all(),
             left_out: LeftOut::default(),
             strokes,
+            is_film: false,
             drawn: Drawn::default(),
         }
     }
@@ -219,7 +236,9 @@ impl<'a> Reader<'a> {
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
             let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
             never.into_iter().for_each(|never| self.left_out.push(node, never));
-            self.shapes.push(shape);
+            // Another drawing is of one frame; it does not say that the part stands still.
+            let held = if self.is_film { shape.held } else { Vec::new() };
+            self.shapes.push(Shape { held, ..shape });
         }
         Ok(())
     }

@@ -25,13 +25,14 @@ use super::channel::Channel;
 use super::limits::{MOST_POINTS, Points};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
+use super::picture::{self, Picture};
 use super::problem::{Fault, LeftOut, parsed};
 use super::range::{Kept, Reach};
 use super::{ImportError, Shape, Shapes};
 use number::{child, curve, named, text_of};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, FalloffCurve, Footage, FrameNumber};
-use roxmltree::Node;
+use roxmltree::{Document, Node};
 use std::collections::BTreeSet;
 use transform::{Transform, parameter};
 
@@ -45,8 +46,10 @@ const CUSTOM: f64 = 4.0;
 /// An [`ImportError`] names the element and its place.
 pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
     let document = parsed(text)?;
+    let (picture, told) = Picture::of(format(&document), footage);
     let mut reader = Reader {
         footage,
+        picture,
         still,
         names: Names::default(),
         points: Points::all(),
@@ -60,15 +63,26 @@ pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shape
         }
     }
     reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
-    let warnings = reader.left_out.lines(text);
+    let mut warnings = reader.left_out.lines(text);
+    if !reader.shapes.is_empty() {
+        warnings.extend(told);
+    }
     if reader.shapes.is_empty() && warnings.is_empty() {
         return Err(ImportError::Nothing("a Bézier curve of a Roto or RotoPaint node"));
     }
     Ok(Shapes { shapes: reader.shapes, warnings })
 }
 
+/// The size of the project's picture, if its format is one of its own, which is named by its size.
+fn format(document: &Document) -> Option<[f64; 2]> {
+    let is_format = |node: &Node| child(*node, "Name").is_some_and(|name| text_of(name) == "outputFormat");
+    let parameter = document.descendants().find(is_format)?;
+    picture::size(text_of(child(parameter, "ChoiceLabel")?), 'x')
+}
+
 struct Reader<'a> {
     footage: &'a Footage,
+    picture: Picture,
     still: FrameNumber,
     names: Names,
     points: Points,
@@ -125,7 +139,7 @@ impl Reader<'_> {
         let (falloff, hidden) = (self.falloff(item), hidden(item));
         let (shape, never) = Shape::new((name, closed), frames.into_iter().zip(made).collect(), &hidden, self.footage);
         never.into_iter().for_each(|never| self.left_out.push(item, never));
-        Ok(Shape { falloff, ..shape })
+        Ok(Shape { falloff: Some(falloff), ..shape })
     }
 
     /// The falloff of a curve. One that cannot be read is that of a curve without one: its outline counts.
@@ -167,12 +181,11 @@ impl Reader<'_> {
 
     /// The path on a frame, in pixels of the footage.
     fn path(&self, knots: &[Knot], transform: Option<&Transform>, closed: bool, frame: f64) -> Path {
-        let height = self.footage.height as f64;
         let moved = transform.map(|transform| transform.at(frame));
         let place = |[x, y]: &[Channel; 2]| {
             let p = Point::new(x.at(frame), y.at(frame));
             let p = moved.map_or(p, |moved| moved.transform_point2(p));
-            Point::new(p.x, height - p.y)
+            self.picture.pixels(p)
         };
         let knots: Vec<[Point; 3]> = knots.iter().map(|knot| [&knot[0], &knot[1], &knot[2]].map(place)).collect();
         Path::through(&knots, closed)

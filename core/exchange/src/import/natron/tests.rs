@@ -187,7 +187,7 @@ fn a_falloff_is_read_with_its_ramp() {
         let parameters = parameter("featherFallOff", &[rate]) + &parameter("fallOffType", &[ramp]);
         let text = project(&bezier("soft", &parameters, &points, true));
         let found = natron(&text, &footage(), 1).unwrap();
-        assert_eq!(found.shapes[0].falloff, falloff, "{rate} {ramp}");
+        assert_eq!(found.shapes[0].falloff, Some(falloff), "{rate} {ramp}");
         assert_eq!(found.warnings.len(), usize::from(rate == keyed), "{:?}", found.warnings);
     }
 }

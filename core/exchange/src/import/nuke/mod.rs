@@ -3,7 +3,7 @@
 //! A `curvegroup` has a name, flags and a type. Its first curve is the shape, the second one its feather. A curve's points
 //! are three pairs of numbers: the handle before the point, the point, the handle after it. A number is decimal, or an `x`
 //! with the hexadecimal digits of a 32-bit float. It may be a list of keys, each with a frame and a value. A list `px`
-//! begins with the frame of its points. Coordinates are pixels with y up.
+//! begins with the frame of its points. Coordinates are pixels with y up, of the node's or the script's `format` (`picture`).
 //!
 //! - A shape has keys on the frames on which any of its numbers has one. Between keys numbers are taken as linear.
 //! - Keys beyond the footage are left out (`range`).
@@ -28,6 +28,7 @@ use super::channel::Channel;
 use super::limits::MOST_POINTS;
 use super::names::Names;
 use super::path::{Path, contours};
+use super::picture::{self, Picture};
 use super::problem::Fault;
 use super::range::{Kept, Reach};
 use super::{ImportError, Shape, Shapes};
@@ -54,17 +55,23 @@ const FRAME_RANGE: f64 = 4.0;
 ///
 /// An [`ImportError`] names the list and its place.
 pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
+    let items = items(text)?;
+    let (picture, told) = Picture::of(format(&items), footage);
     let mut reader = Reader {
         text,
         footage,
+        picture,
         still,
         names: Names::default(),
         left: MOST_POINTS,
         found: Shapes::default(),
         reach: Reach::new(),
     };
-    for item in items(text)? {
-        reader.walk(&item, &mut Vec::new())?;
+    for item in &items {
+        reader.walk(item, &mut Vec::new())?;
+    }
+    if !reader.found.shapes.is_empty() {
+        reader.found.warnings.extend(told);
     }
     reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
     if reader.found.shapes.is_empty() && reader.found.warnings.is_empty() {
@@ -75,9 +82,22 @@ pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes,
     Ok(reader.found)
 }
 
+/// The size of the picture: the format of a Roto or RotoPaint node, or else that of the script.
+fn format(items: &[Item]) -> Option<[f64; 2]> {
+    let of = |kinds: &[&str]| {
+        items.windows(2).find_map(|pair| {
+            let knobs = pair[0].word().filter(|word| kinds.contains(word)).map(|_| pair[1].items())?;
+            let value = knobs.windows(2).find(|knob| knob[0].word() == Some("format"))?[1].word()?;
+            picture::size(value, ' ')
+        })
+    };
+    of(&["Roto", "RotoPaint"]).or_else(|| of(&["Root"]))
+}
+
 struct Reader<'a> {
     text: &'a str,
     footage: &'a Footage,
+    picture: Picture,
     still: FrameNumber,
     names: Names,
     /// Points that the file may still have.
@@ -179,7 +199,7 @@ impl Reader<'_> {
         }
         let (shape, never) = Shape::new((self.names.free(name), outline.closed), keys, &hidden, self.footage);
         self.found.warnings.extend(never.map(|never| format!("{}: {never}", place(self.text, item.start))));
-        self.found.shapes.push(Shape { falloff, ..shape });
+        self.found.shapes.push(Shape { falloff: Some(falloff), ..shape });
         Ok(())
     }
 
@@ -297,12 +317,8 @@ impl Reader<'_> {
     /// The path on a frame, in pixels of the footage.
     fn path(&self, outline: &Outline, chain: &[&Transform], frame: f64) -> Path {
         let placed = chain.iter().fold(DAffine2::IDENTITY, |outer, inner| outer * inner.at(frame));
-        let height = self.footage.height as f64;
         let raw = |pair: &[Channel; 2]| Point::new(pair[0].at(frame), pair[1].at(frame));
-        let down = |p: Point| {
-            let p = placed.transform_point2(p);
-            Point::new(p.x, height - p.y)
-        };
+        let down = |p: Point| self.picture.pixels(placed.transform_point2(p));
         if outline.spline {
             let guides: Vec<Point> = outline.pairs.iter().map(|pair| down(raw(pair))).collect();
             return Path::spline(&guides, outline.closed);

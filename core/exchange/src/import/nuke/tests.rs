@@ -25,7 +25,7 @@ fn what_is_exported_is_read_again() {
     let found = nuke(&export::nuke(&scene, 1.0), &footage(), 1).unwrap();
     assert_eq!(found.warnings, [""; 0]);
     for (shape, part) in found.shapes.iter().zip(&scene.parts) {
-        assert_eq!((&shape.name, shape.closed, shape.falloff), (&part.name, part.closed, part.falloff));
+        assert_eq!((&shape.name, shape.closed, shape.falloff), (&part.name, part.closed, Some(part.falloff)));
         for (frame, points) in &part.keys {
             let apart = shape.keys[frame].iter().zip(points).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
             assert!(apart < 1e-4 && shape.keys[frame].len() == points.len(), "{frame}: {:?}", shape.keys[frame]);
@@ -43,18 +43,18 @@ fn a_falloff_is_read_and_one_with_keys_is_told() {
         [("1", 1.0), ("x40200000", 2.5), ("0", Falloff::LEAST), ("90", Falloff::MOST), ("{{5 3}}", 3.0)]
     {
         let found = read(value);
-        assert_eq!(found.shapes[0].falloff, Falloff { rate, curve: None }, "{value}");
+        assert_eq!(found.shapes[0].falloff, Some(Falloff { rate, curve: None }), "{value}");
         assert_eq!(found.warnings, [""; 0]);
     }
     let moving = read("{{1 2} {9 4}}");
-    assert_eq!(moving.shapes[0].falloff.rate, 2.0);
+    assert_eq!(moving.shapes[0].falloff.unwrap().rate, 2.0);
     assert!(
         moving.warnings[0].contains("the falloff of \"Bezier1\" has keys: its first value is taken"),
         "{:?}",
         moving.warnings
     );
     // A shape whose falloff cannot be read is there all the same.
-    assert_eq!(read("{=parent.size}").shapes[0].falloff, Falloff::default());
+    assert_eq!(read("{=parent.size}").shapes[0].falloff, Some(Falloff::default()));
 }
 
 #[test]

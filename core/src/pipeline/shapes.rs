@@ -1,0 +1,236 @@
+//! Shapes of other programs become keys of a document.
+
+use super::PipelineError;
+use super::excerpt;
+use crate::export;
+use crate::import::{self, Change, ImportError, Shapes, Taken};
+use crate::project::Document;
+use crate::scene::{Footage, FrameNumber, Scene};
+use std::collections::BTreeMap;
+
+/// A format of a file with shapes. Shapes without animation get their key on the frame `still`, a frame of the footage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeFormat {
+    /// SVG.
+    Svg {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+    /// Silhouette shapes.
+    Silhouette,
+    /// A script of Nuke.
+    Nuke {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+    /// A project of Natron.
+    Natron {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+    /// A setting of Fusion.
+    Fusion {
+        /// A frame of the footage.
+        still: FrameNumber,
+    },
+}
+
+impl ShapeFormat {
+    /// The format of files with this extension.
+    pub fn of(extension: &str, still: FrameNumber) -> Option<Self> {
+        Some(match extension {
+            "svg" => Self::Svg { still },
+            "fxs" => Self::Silhouette,
+            "nk" => Self::Nuke { still },
+            "ntp" => Self::Natron { still },
+            "setting" | "comp" => Self::Fusion { still },
+            _ => return None,
+        })
+    }
+
+    /// The extension of files that this program writes in the format.
+    fn extension(self) -> &'static str {
+        match self {
+            Self::Svg { .. } => "svg",
+            Self::Silhouette => "fxs",
+            Self::Nuke { .. } => "nk",
+            Self::Natron { .. } => "ntp",
+            Self::Fusion { .. } => "setting",
+        }
+    }
+
+    /// The format where all frames are `offset` later.
+    fn shifted(self, offset: FrameNumber) -> Self {
+        let moved = |still: FrameNumber| still.saturating_add(offset);
+        match self {
+            Self::Svg { still } => Self::Svg { still: moved(still) },
+            Self::Silhouette => Self::Silhouette,
+            Self::Nuke { still } => Self::Nuke { still: moved(still) },
+            Self::Natron { still } => Self::Natron { still: moved(still) },
+            Self::Fusion { still } => Self::Fusion { still: moved(still) },
+        }
+    }
+}
+
+/// What an import did to a document.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Imported {
+    /// What became of each shape, farthest first.
+    pub taken: Vec<Taken>,
+    /// A line for each element that was left out or may be wrong.
+    pub warnings: Vec<String>,
+}
+
+/// Puts the shapes in the text of a file into the document as keys of parts. The frames of the file are those of the document plus
+/// `offset`; the frame in `format` is one of the document.
+///
+/// # Errors
+///
+/// [`PipelineError::Option`] for an offset that is too large, and [`PipelineError::Import`]; the document is then unchanged.
+pub fn import_shifted(
+    document: &mut Document,
+    text: &str,
+    format: ShapeFormat,
+    offset: FrameNumber,
+) -> Result<Imported, PipelineError> {
+    let footage = excerpt::shifted(&document.scene.footage, offset)?;
+    let mut found = shapes(&footage, text, format.shifted(offset))?;
+    let own = own_names(&document.scene, format.extension());
+    for shape in &mut found.shapes {
+        let keys = std::mem::take(&mut shape.keys).into_iter();
+        shape.keys = keys.map(|(frame, points)| (frame.saturating_sub(offset), points)).collect();
+        let frames = shape.absent.iter_mut().flatten().chain(&mut shape.held);
+        frames.for_each(|frame| *frame = frame.saturating_sub(offset));
+        if let Some(name) = own.get(&shape.name) {
+            shape.name.clone_from(name);
+        }
+    }
+    Ok(Imported { taken: import::into_scene(&mut document.scene, found.shapes), warnings: found.warnings })
+}
+
+/// The parts whose name the format cannot write, by their names there.
+fn own_names(scene: &Scene, extension: &str) -> BTreeMap<String, String> {
+    let renamed = export::renamed(scene, extension).into_iter();
+    renamed.map(|(own, there)| (there, own.to_owned())).collect()
+}
+
+/// The shapes of a file.
+fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
+    match format {
+        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still),
+        ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage),
+        ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
+        ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
+        ShapeFormat::Fusion { still } => import::fusion::fusion(text, footage, still),
+    }
+}
+
+impl Imported {
+    /// What an import did to parts that the document had, in words; nothing if all shapes are new parts.
+    pub fn told(&self) -> Option<String> {
+        let of = |is: &dyn Fn(&Change) -> bool| -> Vec<String> {
+            self.taken.iter().filter(|taken| is(&taken.change)).map(|taken| format!("{:?}", taken.name)).collect()
+        };
+        let changed: Vec<String> = self
+            .taken
+            .iter()
+            .filter_map(|taken| match &taken.change {
+                Change::Frames(frames) if frames.is_empty() => Some(format!("{:?} in its falloff", taken.name)),
+                Change::Frames(frames) => Some(format!("{:?} on {}", taken.name, listed(frames))),
+                _ => None,
+            })
+            .collect();
+        let group =
+            |what: &str, names: Vec<String>| (!names.is_empty()).then(|| format!("{what} {}", names.join(", ")));
+        let told: Vec<String> = [
+            group("changed", changed),
+            group("replaced with all keys and corrections", of(&|change| *change == Change::Replaced)),
+            group("as before", of(&|change| *change == Change::Nothing)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let new = of(&|change| *change == Change::New);
+        let new = group("new", if told.is_empty() { Vec::new() } else { new });
+        let told: Vec<String> = told.into_iter().chain(new).collect();
+        (!told.is_empty()).then(|| told.join("; "))
+    }
+}
+
+/// Frames as "3, 5-8".
+fn listed(frames: &[FrameNumber]) -> String {
+    let mut ranges: Vec<[FrameNumber; 2]> = Vec::new();
+    for &frame in frames {
+        match ranges.last_mut() {
+            Some(last) if last[1] + 1 == frame => last[1] = frame,
+            _ => ranges.push([frame; 2]),
+        }
+    }
+    let one =
+        |[first, last]: &[FrameNumber; 2]| if first == last { first.to_string() } else { format!("{first}-{last}") };
+    ranges.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::scene::Part;
+
+    fn document() -> Document {
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 1, last: 9, fps: 12.0, width: 64, height: 48, held: false };
+        let at = |frame: FrameNumber, x: f64| (frame, vec![Point::new(x + f64::from(frame), 2.0), Point::X, Point::Y]);
+        let part = |(k, name): (usize, &str)| Part {
+            name: name.into(),
+            closed: true,
+            depth: k as f64,
+            keys: [1, 9].map(|frame| at(frame, 3.0)).into(),
+            tracks: (1..=9).map(|frame| at(frame, 3.0)).collect(),
+            confidence: (1..=9).map(|frame| (frame, vec![0.4; 3])).collect(),
+            ..Part::default()
+        };
+        let parts = ["große Hand", "a\"b [1]", "arm"].into_iter().enumerate().map(part).collect();
+        Document::new(Scene { footage, parts })
+    }
+
+    #[test]
+    fn what_other_programs_give_back_unchanged_changes_nothing() {
+        let own = document();
+        for (extension, text) in [
+            ("nk", export::nuke(&own.scene, 2.0)),
+            ("ntp", export::natron_project(&own.scene, 2.0)),
+            ("fxs", export::silhouette(&own.scene, 2.0)),
+            ("setting", export::fusion(&own.scene, 2.0)),
+            ("svg", export::svg(&own.scene, &export::SvgOptions::default())),
+        ] {
+            let mut found = document();
+            let format = ShapeFormat::of(extension, 1).unwrap();
+            let imported = import_shifted(&mut found, &text, format, 0).unwrap();
+            assert_eq!(found.scene, own.scene, "{extension}");
+            let told = imported.told().unwrap();
+            assert!(told.starts_with("as before ") && !told.contains(';'), "{extension}: {told}");
+        }
+    }
+
+    #[test]
+    fn an_edit_is_told_with_its_frames() {
+        let mut edited = document();
+        edited.scene.parts[0].tracks.get_mut(&4).unwrap()[0].x += 5.0;
+        let mut text = document();
+        text.scene.parts[2].name = "leg".into();
+        edited.scene.parts[2] = text.scene.parts[2].clone();
+        let mut found = document();
+        let text = export::nuke(&edited.scene, 2.0);
+        let imported = import_shifted(&mut found, &text, ShapeFormat::Nuke { still: 1 }, 0).unwrap();
+        let told = imported.told().unwrap();
+        assert_eq!(told, r#"changed "große Hand" on 4; as before "a\"b [1]"; new "leg""#);
+        assert_eq!(found.scene.parts[0].keys.keys().copied().collect::<Vec<_>>(), [1, 4, 9]);
+        assert_eq!(found.scene.parts.len(), 4);
+    }
+
+    #[test]
+    fn frames_are_listed_as_ranges() {
+        assert_eq!(listed(&[3, 5, 6, 7, 9]), "3, 5-7, 9");
+    }
+}
