@@ -34,7 +34,8 @@ def read(project: dict[str, Any]) -> tuple[dict[int, list[Click]], dict[int, lis
     except RototoonError as error:
         raise Problem(str(error)) from error
     found: dict[int, list[Click]] = {}
-    for click in fills:
+    # A region that stays without paint has no shape on a layer.
+    for click in (click for click in fills if click.colour is not None):
         found.setdefault(click.frame, []).append(click)
     return found, {frame: filling.regions_on(filled, frame) for frame in filled.frames.tolist()}
 

@@ -17,6 +17,7 @@ Coordinates are pixels, colours sRGB from 0 to 1. `Filled` has flat arrays for N
 from __future__ import annotations
 
 import array
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -34,8 +35,8 @@ class Click(NamedTuple):
     """The frame, as in the document."""
     at: tuple[float, float]
     """The place in the region, in pixels."""
-    colour: tuple[float, float, float]
-    """sRGB from 0 to 1. Paper is a colour too."""
+    colour: tuple[float, float, float] | None
+    """sRGB from 0 to 1. `None` says that the region stays without paint."""
 
 
 @dataclass(frozen=True)
@@ -134,11 +135,12 @@ def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float],
     frames, places, colours = array.array("i"), array.array("d"), array.array("d")
     for k, click in enumerate(clicks):
         try:
-            frame, (x, y), (red, green, blue) = click
+            frame, (x, y), colour = click
+            red, green, blue = (math.nan,) * 3 if colour is None else colour
             frames.append(frame)
             places.extend((x, y))
             colours.extend((red, green, blue))
         except (TypeError, ValueError, OverflowError) as error:
-            expected = "a frame, a place (x, y) and a colour (r, g, b)"
+            expected = "a frame, a place (x, y) and a colour (r, g, b), or None for no paint"
             raise RototoonError(f"clicks[{k}]: found {click!r}, expected {expected}") from error
     return frames, places, colours

@@ -127,7 +127,8 @@ class Session:
     def fills(self) -> list[Click]:
         """The clicks of the painter, by frame."""
         fills = json.loads(self._handle.give(handles.Text, "rototoon_session_fills"))
-        return [Click(own["frame"], (*each["at"],), (*each["colour"],)) for own in fills for each in own["regions"]]
+        clicks = [(own["frame"], each) for own in fills for each in own["regions"]]
+        return [Click(frame, (*own["at"],), own["colour"] and (*own["colour"],)) for frame, own in clicks]
 
     def set_fills(self, clicks: Iterable[Click]) -> None:
         """Replaces the clicks of the painter. Those of a frame keep their order. Painted regions stay until the next `fill`."""

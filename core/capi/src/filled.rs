@@ -76,7 +76,8 @@ fn counted(number: usize, what: &str, frame: FrameNumber) -> Result<i32, Failure
         .map_err(|_| Failure::Error(format!("frame {frame}: {what} {number}: expected at most {}", i32::MAX)))
 }
 
-/// Sorts clicks by frame. On a frame they keep their order. `places` has two numbers for each click, `colours` three.
+/// Sorts clicks by frame. On a frame they keep their order. `places` has two numbers for each click, `colours` three, or three NaN for a region without
+/// paint.
 ///
 /// # Errors
 ///
@@ -90,10 +91,13 @@ pub fn clicks_by_frame(frames: &[i32], places: &[f64], colours: &[f64]) -> Resul
         if !(x.abs() <= MAX_COORDINATE && y.abs() <= MAX_COORDINATE) {
             return Err(wrong(format!("place: found ({x}, {y}), expected pixels within ±{MAX_COORDINATE}")));
         }
-        if let Some(value) = colour.iter().find(|value| !(0.0..=1.0).contains(*value)) {
-            return Err(wrong(format!("colour: found {value}, expected numbers from 0 to 1")));
+        let is_bare = colour.iter().all(|value| value.is_nan());
+        if let Some(value) = colour.iter().find(|value| !is_bare && !(0.0..=1.0).contains(*value)) {
+            return Err(wrong(format!(
+                "colour: found {value}, expected numbers from 0 to 1, or three NaN for no paint"
+            )));
         }
-        let colour = colour.map(|value| value as f32);
+        let colour = (!is_bare).then(|| colour.map(|value| value as f32));
         found.entry(frame).or_default().push(FillClick { at: Point::new(x, y), colour });
     }
     Ok(found.into_iter().map(|(frame, clicks)| FillClicks { frame, clicks }).collect())
@@ -209,8 +213,13 @@ mod tests {
             said([f64::NAN, 0.0], [0.0; 3]),
             "click 0 (frame 3): place: found (NaN, 0), expected pixels within ±1000000"
         );
-        assert_eq!(said([1.0; 2], [0.0, 2.0, 0.0]), "click 0 (frame 3): colour: found 2, expected numbers from 0 to 1");
-        assert!(said([1.0; 2], [f64::NAN; 3]).contains("colour: found NaN"));
+        assert_eq!(
+            said([1.0; 2], [0.0, 2.0, 0.0]),
+            "click 0 (frame 3): colour: found 2, expected numbers from 0 to 1, or three NaN for no paint"
+        );
+        assert!(said([1.0; 2], [f64::NAN, 0.0, f64::NAN]).contains("colour: found NaN"));
+        let bare = clicks_by_frame(&[3], &[1.0; 2], &[f64::NAN; 3]).unwrap();
+        assert_eq!(bare[0].clicks[0].colour, None);
     }
 
     #[test]

@@ -11,7 +11,8 @@ use std::ffi::c_void;
 use std::ptr::{null, null_mut};
 
 /// Replaces the clicks of the painter, `fills` in the document. `frames` has `click_count` frame numbers, in any order.
-/// `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1; paper is a colour too.
+/// `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1, or three NaN for a region that stays without
+/// paint.
 /// On a frame, clicks keep their order. The painted regions stay until `rototoon_session_fill` runs. Without clicks the
 /// field is removed.
 #[unsafe(no_mangle)]

@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn clicks_are_read() {
         let doc = document(r#""fills": [{"frame": 2, "regions": [{"at": [3, 4.5], "colour": [1, 0.5, 0]}]}]"#);
-        let click = FillClick { at: Point::new(3.0, 4.5), colour: [1.0, 0.5, 0.0] };
+        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([1.0, 0.5, 0.0]) };
         assert_eq!(doc.fills().unwrap(), [FillClicks { frame: 2, clicks: vec![click] }]);
         assert!(document(r#""author": 1"#).fills().unwrap().is_empty());
     }
@@ -212,8 +212,9 @@ mod tests {
     #[test]
     fn clicks_are_written_and_removed() {
         let mut doc = document(r#""author": "a""#);
-        let click = FillClick { at: Point::new(3.0, 4.5), colour: [0.1, 0.5, 0.0] };
-        let fills = [FillClicks { frame: -1, clicks: vec![click; 2] }, FillClicks { frame: 2, clicks: vec![click] }];
+        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([0.1, 0.5, 0.0]) };
+        let bare = FillClick { colour: None, ..click };
+        let fills = [FillClicks { frame: -1, clicks: vec![click, bare] }, FillClicks { frame: 2, clicks: vec![click] }];
         doc.set_fills(&fills);
         let again = Document::parse(&doc.to_json(), "a.json").unwrap();
         assert_eq!(again.fills().unwrap(), fills);

@@ -41,8 +41,9 @@ pub struct Fill {
 pub fn fills(page: &Page, paint: &Paint) -> Vec<Fill> {
     let regions = &page.regions;
     let under = (UNDER * regions.unit).max(1.0) as u32;
-    let painted: Vec<(usize, usize, usize)> =
-        (1..=regions.count).filter_map(|region| Some((region, paint.painted(region)?, paint.tracks[region]?))).collect();
+    let painted: Vec<(usize, usize, usize)> = (1..=regions.count)
+        .filter_map(|region| Some((region, paint.painted(region)?, paint.tracks[region]?)))
+        .collect();
     let boxes = boxes(&regions.nearest, regions.count);
     let mut fills: Vec<(f64, Fill)> = painted
         .into_par_iter()
@@ -139,7 +140,8 @@ mod tests {
         let picture = Raster::from_fn(540, 540, |x, y| if ink(x, y) { [0.0; 3] } else { [1.0; 3] });
         let mut page = Page::new(Arc::new(picture), &Options::default());
         let clicks = [Point::new(3.0, 3.0), middle];
-        let clicks: Vec<Click> = clicks.iter().enumerate().map(|(colour, &at)| Click { at, colour: Some(colour) }).collect();
+        let clicks: Vec<Click> =
+            clicks.iter().enumerate().map(|(colour, &at)| Click { at, colour: Some(colour) }).collect();
         let (paint, _) = page.painted(&clicks, 2, &mut 0);
         let painted = fills(&page, &paint);
         let [paper, disc] = painted.as_slice() else { panic!("{painted:?}") };

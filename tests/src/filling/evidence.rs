@@ -59,10 +59,9 @@ pub fn table(variant: &Variant) -> Result<String> {
     tones.sort_unstable();
     tones.dedup();
     let clicked = truth.clicks().into_iter().zip(&truth.regions).enumerate();
-    let clicks = clicked.filter(|(k, _)| !variant.bare || k % 4 != 3).map(|(_, (click, region))| Click {
-        at: click.at,
-        colour: tones.binary_search(&region.colour).unwrap_or_default(),
-    });
+    let clicks = clicked
+        .filter(|(k, _)| !variant.bare || k % 4 != 3)
+        .map(|(_, (click, region))| Click { at: click.at, colour: tones.binary_search(&region.colour).ok() });
     let clicks: Vec<Click> = clicks.collect();
     let (document, pictures) = super::run::document(set)?;
     let frames = rototoon::pipeline::frames(&document, pictures.path())?;
@@ -96,7 +95,7 @@ fn row(region: &Region, tones: &[Tone], (page, paint): (&Page, &Paint), width: u
         page.at(place).into_iter().for_each(|own| *counts.entry(own).or_default() += 1);
     }
     let same = |tone: &Tone| (0..3).all(|c| tone[c].abs_diff(region.colour[c]) <= SAME);
-    let painted_right = |own: &usize| paint.colour(*own).is_some_and(|colour| same(&tones[colour]));
+    let painted_right = |own: &usize| paint.painted(*own).is_some_and(|colour| same(&tones[colour]));
     let right: usize = counts.iter().filter(|own| painted_right(own.0)).map(|own| own.1).sum();
     let area = region.pixels.len();
     // Of equal ones the first is taken.

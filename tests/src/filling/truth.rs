@@ -57,7 +57,7 @@ impl Truth {
     pub fn clicks(&self) -> Vec<FillClick> {
         let click = |region: &Region| FillClick {
             at: self.deepest(region),
-            colour: region.colour.map(|value| f32::from(value) / 255.0),
+            colour: Some(region.colour.map(|value| f32::from(value) / 255.0)),
         };
         self.regions.iter().map(click).collect()
     }
@@ -131,6 +131,6 @@ pub(crate) mod tests {
     fn clicks_are_in_the_middle() {
         let clicks = Truth::of(&drawing(&[([20, 30, 41, 51], RED)])).clicks();
         assert_eq!(clicks.len(), 2);
-        assert_eq!((clicks[1].at, clicks[1].colour), (Point::new(30.5, 40.5), RED.map(|v| f32::from(v) / 255.0)));
+        assert_eq!((clicks[1].at, clicks[1].colour), (Point::new(30.5, 40.5), Some(RED.map(|v| f32::from(v) / 255.0))));
     }
 }

@@ -77,7 +77,7 @@ impl Film {
 }
 
 fn click(at: (f64, f64), colour: Colour) -> FillClick {
-    FillClick { at: Point::from(at), colour }
+    FillClick { at: Point::from(at), colour: Some(colour) }
 }
 
 /// Distance from the outline of a box.
@@ -116,6 +116,38 @@ fn every_region_of_a_film_has_its_colour_and_its_number() {
         }
     }
     assert_eq!(film.at(0, (60.0, 75.0)).unwrap().confidence, 1.0, "an artist clicked there");
+}
+
+#[test]
+fn paper_that_is_not_clicked_stays_without_paint() {
+    let [_, red, blue] = own_clicks();
+    let mut film = Film::new(4, moving).clicked(&[(0, &[red, blue])]);
+    let report = film.fill().unwrap();
+    assert!(report.frames.iter().all(|frame| frame.regions == 2 && frame.doubtful == 0), "{report:?}");
+    for frame in 0..=4 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        assert_eq!(film.at(frame, (5.0, 5.0)), None, "frame {frame}");
+        let found = [film.at(frame, (x - 35.0, 75.0)).unwrap(), film.at(frame, (x, 75.0)).unwrap()];
+        assert_eq!(found.map(|region| (region.colour, region.track)), [(RED, 0), (BLUE, 1)], "frame {frame}");
+    }
+}
+
+#[test]
+fn a_click_without_a_colour_keeps_a_region_without_paint() {
+    let [_, red, _] = own_clicks();
+    let hole = FillClick { colour: None, ..click((60.0, 75.0), BLUE) };
+    let mut film = Film::new(4, moving).clicked(&[(0, &[red, hole])]);
+    film.fill().unwrap();
+    for frame in 0..=4 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        assert_eq!(film.at(frame, (x - 35.0, 75.0)).unwrap().colour, RED, "frame {frame}");
+        assert_eq!(film.at(frame, (x, 75.0)), None, "frame {frame}: the hole");
+    }
+    // A later click paints it from there on.
+    let mut film = Film::new(4, moving).clicked(&[(0, &[red, hole]), (2, &[click((72.0, 75.0), BLUE)])]);
+    film.fill().unwrap();
+    let colours: Vec<bool> = (0..=4).map(|f| film.at(f, (60.0 + 6.0 * f64::from(f), 75.0)).is_some()).collect();
+    assert_eq!(colours, [false, false, true, true, true]);
 }
 
 #[test]
