@@ -7,10 +7,13 @@
 //! Cartoons hold each drawing for two or three frames. A contour that lies where it lay on the frame before, on the same
 //! picture, has the same path, so that it is not sought again. On footage drawn on twos this halves the work.
 //!
+//! Where nearer parts hide a segment, its path is not sought in their ink ([`hidden`](super::hidden)).
+//!
 //! Limits: a held drawing under noise or after lossy compression is another picture and is snapped anew. At most one
 //! frame more than there are threads is in memory at a time.
 
 use super::cost::Follow;
+use super::hidden::form_hidden;
 use super::snapper::{InkVote, SnapOptions, Snapper};
 use rayon::iter::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
@@ -86,7 +89,9 @@ pub fn snap_scene(
         last = drawings.pop();
         progress.report("snap", found.len() as f64 / numbers.len() as f64)?;
     }
-    Ok(choose(scene.parts.len(), found))
+    let mut curves = choose(scene.parts.len(), found);
+    form_hidden(scene, &mut curves);
+    Ok(curves)
 }
 
 /// For each frame, the parts that have a contour on it, with the contour.

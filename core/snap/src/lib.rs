@@ -35,6 +35,7 @@
 //! - `subpixel`: from a chain of pixels to a smooth path
 //! - `snapper`: contours of one picture
 //! - `footage`: parts of a scene on all frames
+//! - `hidden`: segments behind nearer parts
 //!
 //! # Example
 //!
@@ -64,6 +65,7 @@ mod corridor;
 mod cost;
 mod derivatives;
 mod footage;
+mod hidden;
 mod live_wire;
 mod snapper;
 mod subpixel;
