@@ -221,7 +221,16 @@ impl PartCheck<'_> {
     fn contour(&mut self, place: &str, points: &[Point]) {
         const LEAST_AREA: f64 = 1e-6;
         if self.part.closed && points.len() > 2 && polygon::signed_area(points).abs() < LEAST_AREA {
-            self.warning(place, "the contour encloses no area");
+            // A figure of eight has an area, but its two halves run in other directions.
+            let (a, b) =
+                (points[0], points.iter().copied().max_by(|p, q| farther(points[0], p, q)).unwrap_or(points[0]));
+            let is_flat = points.iter().all(|p| (b - a).perp_dot(*p - a).abs() < LEAST_AREA);
+            let told = if is_flat {
+                "the contour encloses no area"
+            } else {
+                "the contour crosses itself or goes back on itself"
+            };
+            self.warning(place, told);
         }
         let (Some(footage), Some((low, high))) = (self.footage, polygon::bounds(points)) else { return };
         let size = Point::new(footage.width as f64, footage.height as f64);
@@ -343,4 +352,8 @@ pub fn acts(part: &Part, frame: FrameNumber) -> bool {
         return false;
     };
     (first == last || first < frame && frame < last) && !part.keys.contains_key(&frame)
+}
+
+fn farther(from: Point, p: &Point, q: &Point) -> std::cmp::Ordering {
+    from.distance(*p).total_cmp(&from.distance(*q))
 }

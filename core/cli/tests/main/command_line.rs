@@ -116,6 +116,7 @@ fn odd_parts_are_tracked_or_left_alone_with_a_warning() {
         ("one point", two(json!([[9, 12]])), "has 1 points"),
         ("two points", two(json!([[9, 12], [20, 12]])), "has 2 points"),
         ("no area", two(json!([[9, 12], [20, 12], [14, 12]])), "encloses no area"),
+        ("a figure of eight", two(json!([[9, 12], [20, 18], [20, 12], [9, 18]])), "crosses itself"),
         ("one place", two(json!([[9, 12], [9, 12], [9, 12]])), "encloses no area"),
         ("off", two(json!([[-90, -12], [-70, -12], [-80, -50]])), "is completely outside of the picture"),
         ("far off", two(json!([[-9e5, -12], [9e5, -12], [-80, 9e5]])), ""),
