@@ -12,6 +12,7 @@
 //! - [`shifts`]: where each place of a drawing is on another one, from the registration of both drawings' lines
 //!   ([`rototoon_lines::displaced`])
 //! - [`leaks`]: gaps in lines, which the painted drawing shows
+//! - [`piece`]: what a gap parts from a region, and whether it has leaked
 //! - [`meet`]: how well each region of one drawing meets each of another one
 //! - [`relax`]: who is who, by neighbours
 //! - [`page`]: a drawing, and clicks that paint it
@@ -71,6 +72,7 @@ pub mod leaks;
 pub mod meet;
 pub mod outlines;
 pub mod page;
+pub mod piece;
 pub mod regions;
 pub mod relax;
 mod said;

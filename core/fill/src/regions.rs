@@ -12,7 +12,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 use rototoon_lines::ink::distance;
 use std::cmp::Reverse;
-use std::collections::{BTreeSet, BinaryHeap, VecDeque};
+use std::collections::{BinaryHeap, VecDeque};
 
 /// Area of the smallest region in pixels at 540 lines.
 const LEAST: f64 = 6.0;
@@ -74,44 +74,52 @@ impl Regions {
     /// A flood begins where the way up from its place ends, so a place in a corner counts as much as one in the middle.
     /// Places whose ways end at one summit stay together: nothing is between them.
     pub fn split(&mut self, region: usize, places: &[Point]) {
-        let (width, height) = (self.inside.width(), self.inside.height());
         let own = self.inside.map(|label| label as usize == region);
         let depth = distance::inside(&own);
-        let mut flooded: Raster<u32> = Raster::new(width, height, 0);
-        // Depths are ordered as whole numbers, and equal ones by when they came.
-        let key = |at: usize, level: u32| ((depth.data()[at] * 16.0) as u32).min(level);
-        let mut front: BinaryHeap<(u32, Reverse<usize>, usize, u32)> = BinaryHeap::new();
-        let mut came = 0;
-        let mut summits = BTreeSet::new();
+        let mut starts: Vec<usize> = Vec::new();
         for place in places {
             let Some(at) = nearest_of(&own, *place).map(|at| summit(&depth, at)) else { continue };
-            if !summits.insert(at) {
-                continue;
-            }
-            self.count += usize::from(came > 0);
-            let number = if came == 0 { region } else { self.count } as u32;
-            front.push((key(at, u32::MAX), Reverse(came), at, number));
-            came += 1;
-        }
-        while let Some((level, _, at, number)) = front.pop() {
-            if flooded.data()[at] > 0 {
-                continue;
-            }
-            flooded.data_mut()[at] = number;
-            for next in sides(at, width, height) {
-                if own.data()[next] && flooded.data()[next] == 0 {
-                    front.push((key(next, level), Reverse(came), next, number));
-                    came += 1;
-                }
+            if !starts.contains(&at) {
+                starts.push(at);
             }
         }
-        for (label, number) in self.inside.data_mut().iter_mut().zip(flooded.data()) {
-            if *number > 0 {
-                *label = *number;
+        let first = self.count;
+        self.count += starts.len().saturating_sub(1);
+        for (label, number) in self.inside.data_mut().iter_mut().zip(flood(&depth, &starts)) {
+            match number as usize {
+                0 => {}
+                1 => *label = region as u32,
+                later => *label = (first + later - 1) as u32,
             }
         }
         (self.nearest, self.steps) = spread(&self.inside);
     }
+}
+
+/// Floods what has a depth from places, the deepest cells first: for each cell the number of its place, from 1, or 0.
+pub(crate) fn flood(depth: &Raster<f32>, places: &[usize]) -> Vec<u32> {
+    let (width, height) = (depth.width(), depth.height());
+    let mut flooded = vec![0; width * height];
+    // Depths are ordered as whole numbers, and equal ones by when they came.
+    let key = |at: usize, level: u32| ((depth.data()[at] * 16.0) as u32).min(level);
+    let mut front: BinaryHeap<(u32, Reverse<usize>, usize, u32)> = BinaryHeap::new();
+    for (k, &at) in places.iter().enumerate() {
+        front.push((key(at, u32::MAX), Reverse(k), at, k as u32 + 1));
+    }
+    let mut came = places.len();
+    while let Some((level, _, at, number)) = front.pop() {
+        if flooded[at] > 0 {
+            continue;
+        }
+        flooded[at] = number;
+        for next in sides(at, width, height) {
+            if depth.data()[next] > 0.0 && flooded[next] == 0 {
+                front.push((key(next, level), Reverse(came), next, number));
+                came += 1;
+            }
+        }
+    }
+    flooded
 }
 
 /// The area from which on at most [`MOST`] areas are left; 0 if there are no more.
@@ -134,7 +142,7 @@ pub(crate) fn sides(at: usize, width: usize, height: usize) -> impl Iterator<Ite
 }
 
 /// Where the steepest way up from a pixel ends.
-fn summit(depth: &Raster<f32>, mut at: usize) -> usize {
+pub(crate) fn summit(depth: &Raster<f32>, mut at: usize) -> usize {
     let (width, height) = (depth.width(), depth.height());
     loop {
         let (x, y) = (at % width, at / width);
@@ -205,6 +213,7 @@ fn spread(inside: &Raster<u32>) -> (Raster<u32>, Raster<u32>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     /// A picture of letters: `#` is ink.
     fn drawn(rows: &[&str]) -> Raster<bool> {
