@@ -3,7 +3,7 @@
 use super::error::TrackError;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameSource, Progress, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The artist's corrections on one frame between the keys. Places are in pixels of the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,6 +28,8 @@ pub struct Job {
     pub keys: [Vec<Point>; 2],
     /// The artist's corrections by frame index in the span. Keys have none.
     pub corrections: BTreeMap<usize, Correction>,
+    /// Frame indices in the span on which the part is not there, by the artist's word. Keys are never among them.
+    pub absent: BTreeSet<usize>,
     /// By frame index in the span: closed contours of the nearer parts, keyed or tracked.
     pub occluders: Vec<Vec<Vec<Point>>>,
     /// Width and height of the pictures in pixels.

@@ -42,14 +42,15 @@ pub(crate) fn next_wave(
 }
 
 /// The closed contours nearer than `depth` on a frame: the key if the frame has one, otherwise the result of `tracked`
-/// for the task whose span contains the frame.
+/// for the task whose span contains the frame. A part hides nothing where it is absent.
 pub(crate) fn nearer_contours(
     scene: &Scene,
     tasks: &[Task],
     (depth, frame): (f64, FrameNumber),
     tracked: impl Fn(usize) -> Option<Vec<Point>>,
 ) -> Vec<Vec<Point>> {
-    let nearer = scene.parts.iter().enumerate().filter(|(_, p)| p.closed && p.depth > depth && p.point_count() > 2);
+    let hides = |p: &Part| p.closed && p.depth > depth && p.point_count() > 2 && !p.is_absent(frame);
+    let nearer = scene.parts.iter().enumerate().filter(|(_, p)| hides(p));
     let contour = |(index, p): (usize, &Part)| {
         let holds = |t: &Task| t.part == index && t.span.first < frame && frame < t.span.last;
         p.keys.get(&frame).cloned().or_else(|| tracked(tasks.iter().position(holds)?))
@@ -66,7 +67,8 @@ pub(crate) fn overlap(a: Span, b: Span) -> bool {
 pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) -> Job {
     let Task { part, span, .. } = task;
     let subject = &scene.parts[part];
-    let corrections = (1..span.len() - 1).filter_map(|index| {
+    let absent = |index: &usize| subject.is_absent(span.first + *index as FrameNumber);
+    let corrections = (1..span.len() - 1).filter(|index| !absent(index)).filter_map(|index| {
         let frame = span.first + index as FrameNumber;
         let pins = subject.pins.get(&frame).cloned().unwrap_or_default();
         let center = subject.centers.get(&frame).copied();
@@ -78,6 +80,7 @@ pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) ->
         span,
         keys: [subject.keys[&span.first].clone(), subject.keys[&span.last].clone()],
         corrections: corrections.collect(),
+        absent: (1..span.len() - 1).filter(absent).collect(),
         occluders,
         size: (scene.footage.width, scene.footage.height),
     }
@@ -89,8 +92,10 @@ pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrac
     for (task, result) in tasks.iter().zip(done) {
         let Some((track, solved)) = result else { continue };
         let part = &mut tracking.parts[task.part];
-        part.tracks.extend(task.span.frames().zip(track.points));
-        part.confidence.extend(task.span.frames().zip(track.confidence));
+        let is_there = |(frame, _): &(FrameNumber, _)| !scene.parts[task.part].is_absent(*frame);
+        part.tracks.extend(task.span.frames().zip(track.points).filter(is_there));
+        let is_there = |(frame, _): &(FrameNumber, _)| !scene.parts[task.part].is_absent(*frame);
+        part.confidence.extend(task.span.frames().zip(track.confidence).filter(is_there));
         tracking.jobs.push(JobReport { part: task.part, span: task.span, summary: track.summary, solved });
     }
     tracking

@@ -283,6 +283,7 @@ mod tests {
             span: Span { first: 12, last: 17 },
             keys: [key.clone(), key],
             corrections: BTreeMap::new(),
+            absent: BTreeSet::new(),
             occluders: vec![Vec::new(); 6],
             size: (64, 48),
         };

@@ -18,7 +18,6 @@ use super::stage::{Kit, Stage};
 use crate::contract::error::TrackError;
 use crate::contract::job::{SpanSummary, SpanTrack, Termination};
 use crate::contract::tasks::Task;
-use crate::shared::drawings::Drawing;
 use crate::shared::features::working_scale;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
@@ -72,7 +71,7 @@ impl Finish {
                     return Some(key.iter().map(|&p| p / scale).collect());
                 }
                 let index = (first - span.first) as usize;
-                let drawing = members[k].drawings.iter().position(|x| x.first <= index && index <= x.last)?;
+                let drawing = members[k].drawing_at(index)?;
                 Some(chosen(k, drawing).points.clone())
             };
             (0..members.len()).filter_map(of_member).filter(near).collect()
@@ -153,13 +152,13 @@ impl Finished {
         }
     }
 
-    /// Of each frame of the span: its drawing, and the evidence about each control point.
+    /// Of each frame of the span: its drawing, and the evidence about each control point, which is empty where the part is absent.
     pub fn evidence(&self) -> Vec<(usize, Vec<Evidence>)> {
-        let of = |(d, drawing): (usize, &Drawing)| {
-            let evidence = if self.settled.is_empty() { Vec::new() } else { self.evidence_on(d) };
-            (drawing.first..=drawing.last).map(move |_| (d, evidence.clone()))
+        let of = |index: usize| match self.source.drawing_at(index) {
+            Some(d) if !self.settled.is_empty() => (d, self.evidence_on(d)),
+            drawing => (drawing.unwrap_or(0), Vec::new()),
         };
-        self.source.drawings.iter().enumerate().flat_map(of).collect()
+        (0..self.source.job.span.len()).map(of).collect()
     }
 
     /// The evidence about each control point on a drawing.
@@ -324,7 +323,9 @@ impl Finished {
             return job.keys_only();
         }
         let (last, last_drawing, scale) = (job.span.len() - 1, drawn.len() - 1, working_scale(job.size.1));
-        let (mut points, mut sure) = (Vec::new(), Vec::new());
+        // Where the part is absent it has no track in the end.
+        let mut points: Vec<Vec<Point>> = (0..=last).map(|index| job.interpolated(index)).collect();
+        let mut sure = vec![vec![0.0; job.keys[0].len()]; last + 1];
         for (d, drawing) in pooled.drawings.iter().enumerate() {
             let evidence = self.evidence_on(d);
             let confidence = if evidence.is_empty() {
@@ -338,8 +339,8 @@ impl Finished {
                 let found = || drawn[d].iter().map(|&p| p * scale).collect();
                 let mut on_frame = key.map_or_else(found, Clone::clone);
                 job.enforce_within(pooled.center_reach[d] * scale, index, &mut on_frame);
-                points.push(on_frame);
-                sure.push(if index == 0 || index == last { vec![1.0; drawn[d].len()] } else { confidence.clone() });
+                points[index] = on_frame;
+                sure[index] = if index == 0 || index == last { vec![1.0; drawn[d].len()] } else { confidence.clone() };
             }
         }
         for (&index, correction) in &job.corrections {

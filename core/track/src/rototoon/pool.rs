@@ -11,6 +11,7 @@ use super::search::Templates;
 use super::select::{Candidate, Smoothness, best_path};
 use super::stage::Stage;
 use crate::contract::error::TrackError;
+use crate::shared::drawings::gaps;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use std::collections::BTreeMap;
@@ -139,7 +140,7 @@ pub(super) fn hypothesis(
 pub(super) fn choose(stage: &Stage, pools: &Pools) -> Vec<usize> {
     let candidates: Vec<Vec<Candidate>> =
         pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
-    best_path(&candidates, Smoothness::new(stage.models[0].texture.mesh.size))
+    best_path(&candidates, Smoothness::new(stage.models[0].texture.mesh.size), &gaps(&stage.drawings))
 }
 
 /// The poses of both models, carried from their keys: two hypotheses on each drawing, the first key's one first.

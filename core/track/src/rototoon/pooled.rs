@@ -30,6 +30,11 @@ impl Pooled {
         (self.job.name.clone(), self.job.span)
     }
 
+    /// The drawing that a frame of the span shows. `None` where the part is absent.
+    pub fn drawing_at(&self, index: usize) -> Option<usize> {
+        self.drawings.iter().position(|d| d.first <= index && index <= d.last)
+    }
+
     /// Whether the artist has corrected the part on a drawing.
     pub fn corrected(&self, drawing: usize) -> bool {
         self.corrections(drawing).iter().any(Option::is_some)
@@ -43,7 +48,7 @@ impl Pooled {
 
     /// Where the part alone would put its control points on a frame of the span, in pixels of the picture.
     pub fn own_points(&self, index: usize) -> Vec<Point> {
-        let drawing = self.drawings.iter().position(|d| d.first <= index && index <= d.last);
+        let drawing = self.drawing_at(index);
         let scale = working_scale(self.job.size.1);
         match drawing.filter(|_| !self.pools.is_empty()) {
             Some(d) => self.pools[d][self.path[d]].points.iter().map(|&p| p * scale).collect(),

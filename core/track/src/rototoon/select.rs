@@ -4,6 +4,10 @@
 //! Viterbi). The cost of a path is Σ √E + 0.005 min(|Δ|/z, 3) + 0.05 min(|Δ²|/z, 3). E is the energy of a hypothesis, Δ
 //! and Δ² are first and second differences of the control points (mean length over the points), and z = √(40 size) px.
 //! The upper limits allow a part to jump where it must.
+//!
+//! Nothing is known about the motion across a [gap](crate::shared::drawings). It costs nothing, so a path on one side of a gap does not
+//! depend on the other side. Nor is the change of motion beside a gap known; there the part is expected to stand still in the gap, so the step
+//! beside it counts as a change of motion too. Without that, a drawing between a gap and a key could be anywhere.
 
 use rototoon_base::geometry::Point;
 
@@ -38,11 +42,6 @@ impl Smoothness {
         Self { unit: Self::new(size).unit.max(jump) }
     }
 
-    /// Cost of the motion from one drawing to the next.
-    pub fn speed(&self, a: &[Point], b: &[Point]) -> f64 {
-        self.of_shift(mean_shift(a, b))
-    }
-
     /// Cost of a change of the motion over three drawings.
     pub fn acceleration(&self, a: &[Point], b: &[Point], c: &[Point]) -> f64 {
         self.of_bend(mean_bend(a, b, c))
@@ -58,11 +57,27 @@ impl Smoothness {
         ACCELERATION * (length / self.unit).min(CAP)
     }
 
-    /// Motion cost of a complete path.
-    pub fn of_path(&self, points: &[&[Point]]) -> f64 {
-        points.windows(2).map(|w| self.speed(w[0], w[1])).sum::<f64>()
-            + points.windows(3).map(|w| self.acceleration(w[0], w[1], w[2])).sum::<f64>()
+    /// Motion cost of a complete path. `gaps` are the indices of the drawings that begin after a gap.
+    pub fn of_path(&self, points: &[&[Point]], gaps: &[usize]) -> f64 {
+        let steps = points.windows(2).zip(1..);
+        let bends = points.windows(3).zip(2..).filter(|(_, d)| !bends_over(gaps, *d));
+        steps.map(|(w, d)| self.of_step(mean_shift(w[0], w[1]), (d, gaps))).sum::<f64>()
+            + bends.map(|(w, _)| self.acceleration(w[0], w[1], w[2])).sum::<f64>()
     }
+
+    /// Cost of the step to drawing `d` if it has this mean length, in working pixels.
+    pub fn of_step(&self, length: f64, (d, gaps): (usize, &[usize])) -> f64 {
+        if gaps.contains(&d) {
+            return 0.0;
+        }
+        let beside = gaps.contains(&(d + 1)) || gaps.contains(&(d - 1));
+        self.of_shift(length) + if beside { self.of_bend(length) } else { 0.0 }
+    }
+}
+
+/// Whether there is a gap between drawing `d` and the two before.
+pub fn bends_over(gaps: &[usize], d: usize) -> bool {
+    gaps.contains(&d) || gaps.contains(&(d - 1))
 }
 
 /// Cost of motion between states, which are given by their indices on neighbouring drawings.
@@ -79,24 +94,30 @@ pub struct Direct<'a> {
     pub candidates: &'a [Vec<Candidate<'a>>],
     /// The cost of lengths.
     pub smoothness: Smoothness,
+    /// The drawings that begin after a gap.
+    pub gaps: &'a [usize],
 }
 
 impl Motion for Direct<'_> {
     fn speed(&self, d: usize, [g, h]: [usize; 2]) -> f64 {
-        self.smoothness.speed(self.candidates[d - 1][g].points, self.candidates[d][h].points)
+        let length = mean_shift(self.candidates[d - 1][g].points, self.candidates[d][h].points);
+        self.smoothness.of_step(length, (d, self.gaps))
     }
 
     fn acceleration(&self, d: usize, [f, g, h]: [usize; 3]) -> f64 {
+        if bends_over(self.gaps, d) {
+            return 0.0;
+        }
         let at = |d: usize, state: usize| self.candidates[d][state].points;
         self.smoothness.acceleration(at(d - 2, f), at(d - 1, g), at(d, h))
     }
 }
 
-/// Index of the chosen hypothesis on each drawing. Each drawing must have at least one.
-pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<usize> {
+/// Index of the chosen hypothesis on each drawing. Each drawing must have at least one. `gaps` are the drawings that begin after a gap.
+pub fn best_path(candidates: &[Vec<Candidate>], smoothness: Smoothness, gaps: &[usize]) -> Vec<usize> {
     let costs: Vec<Vec<f64>> =
         candidates.iter().map(|states| states.iter().map(|state| state.cost).collect()).collect();
-    path_of_least_cost(&costs, &Direct { candidates, smoothness })
+    path_of_least_cost(&costs, &Direct { candidates, smoothness, gaps })
 }
 
 /// Index of the state on each drawing, along the path of least cost. `costs` are those of the states of each drawing, of which
@@ -176,13 +197,17 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn cost_of(path: &[usize], pool: &[Vec<(f64, Point)>], size: f64) -> f64 {
+    fn cost_of(path: &[usize], pool: &[Vec<(f64, Point)>], size: f64, gap: usize) -> f64 {
         let unit = (40.0 * size).sqrt();
         let at = |i: usize| pool[i][path[i]].1;
         let mut cost: f64 = (0..path.len()).map(|i| pool[i][path[i]].0.sqrt()).sum();
-        cost += (1..path.len()).map(|i| SPEED * ((at(i) - at(i - 1)).length() / unit).min(CAP)).sum::<f64>();
+        let steps = || (1..path.len()).filter(|i| *i != gap);
+        let beside = steps().filter(|i| i + 1 == gap || *i == gap + 1);
+        cost += beside.map(|i| ACCELERATION * ((at(i) - at(i - 1)).length() / unit).min(CAP)).sum::<f64>();
+        cost += steps().map(|i| SPEED * ((at(i) - at(i - 1)).length() / unit).min(CAP)).sum::<f64>();
         let bend = |i: usize| (at(i) - 2.0 * at(i - 1) + at(i - 2)).length();
-        cost + (2..path.len()).map(|i| ACCELERATION * (bend(i) / unit).min(CAP)).sum::<f64>()
+        let of_bends = (2..path.len()).filter(|i| *i != gap && i - 1 != gap);
+        cost + of_bends.map(|i| ACCELERATION * (bend(i) / unit).min(CAP)).sum::<f64>()
     }
 
     proptest! {
@@ -190,6 +215,7 @@ mod tests {
         fn no_other_path_costs_less(
             pool in prop::collection::vec(
                 prop::collection::vec((0.0f64..0.2, -40.0f64..40.0, -40.0f64..40.0), 1..4), 1..6),
+            gap in 1usize..9,
         ) {
             let pool: Vec<Vec<(f64, Point)>> =
                 pool.into_iter().map(|c| c.into_iter().map(|(e, x, y)| (e, Point::new(x, y))).collect()).collect();
@@ -197,7 +223,7 @@ mod tests {
                 .iter()
                 .map(|c| c.iter().map(|(e, p)| Candidate { cost: e.sqrt(), points: std::slice::from_ref(p) }).collect())
                 .collect();
-            let path = best_path(&candidates, Smoothness::new(50.0));
+            let path = best_path(&candidates, Smoothness::new(50.0), &[gap]);
             prop_assert_eq!(path.len(), pool.len());
             let mut all = vec![Vec::new()];
             for hypotheses in &pool {
@@ -206,8 +232,8 @@ mod tests {
                     .flat_map(|p: Vec<usize>| (0..hypotheses.len()).map(move |h| [p.clone(), vec![h]].concat()))
                     .collect();
             }
-            let least = all.iter().map(|p| cost_of(p, &pool, 50.0)).fold(f64::INFINITY, f64::min);
-            prop_assert!((cost_of(&path, &pool, 50.0) - least).abs() < 1e-12);
+            let least = all.iter().map(|p| cost_of(p, &pool, 50.0, gap)).fold(f64::INFINITY, f64::min);
+            prop_assert!((cost_of(&path, &pool, 50.0, gap) - least).abs() < 1e-12);
         }
     }
 }

@@ -6,14 +6,15 @@
 //!
 //! For s hypotheses per drawing this needs s³ second differences per drawing, which both passes share.
 
-use super::select::{Candidate, Smoothness};
+use super::select::{Candidate, Smoothness, bends_over, mean_shift};
 
 /// Of each drawing and hypothesis: the least cost of the paths through it. Each drawing must have at least one hypothesis.
-pub fn through(candidates: &[Vec<Candidate>], smoothness: Smoothness) -> Vec<Vec<f64>> {
+/// `gaps` are the drawings that begin after a gap.
+pub fn through(candidates: &[Vec<Candidate>], smoothness: Smoothness, gaps: &[usize]) -> Vec<Vec<f64>> {
     if candidates.len() < 2 {
         return candidates.iter().map(|states| states.iter().map(|state| state.cost).collect()).collect();
     }
-    let steps: Vec<Step> = (1..candidates.len()).map(|d| Step::new(candidates, d, smoothness)).collect();
+    let steps: Vec<Step> = (1..candidates.len()).map(|d| Step::new(candidates, d, smoothness, gaps)).collect();
     let before = forward(candidates, &steps);
     let after = backward(&steps);
     let total = |d: usize, g: usize, h: usize| before[d][g][h] + after[d][g][h];
@@ -38,12 +39,16 @@ struct Step {
 
 impl Step {
     /// The step to drawing `d`.
-    fn new(candidates: &[Vec<Candidate>], d: usize, smoothness: Smoothness) -> Self {
+    fn new(candidates: &[Vec<Candidate>], d: usize, smoothness: Smoothness, gaps: &[usize]) -> Self {
         let (from, to) = (&candidates[d - 1], &candidates[d]);
-        let arrive = |g: &Candidate| to.iter().map(|h| h.cost + smoothness.speed(g.points, h.points)).collect();
+        let step = |g: &Candidate, h: &Candidate| smoothness.of_step(mean_shift(g.points, h.points), (d, gaps));
+        let arrive = |g: &Candidate| to.iter().map(|h| h.cost + step(g, h)).collect();
         let two_before = if d >= 2 { &candidates[d - 2][..] } else { &[] };
         let bend = |f: &Candidate| {
-            let of = |g: &Candidate| to.iter().map(|h| smoothness.acceleration(f.points, g.points, h.points)).collect();
+            let change = |g: &Candidate, h: &Candidate| {
+                if bends_over(gaps, d) { 0.0 } else { smoothness.acceleration(f.points, g.points, h.points) }
+            };
+            let of = |g: &Candidate| to.iter().map(|h| change(g, h)).collect();
             from.iter().map(of).collect()
         };
         Self { arrival: from.iter().map(arrive).collect(), bends: two_before.iter().map(bend).collect() }
@@ -106,6 +111,7 @@ mod tests {
         fn each_is_the_least_cost_of_all_paths_through_a_hypothesis(
             pool in prop::collection::vec(
                 prop::collection::vec((0.0f64..0.3, -90.0f64..90.0, -90.0f64..90.0), 1..4), 1..6),
+            gap in 1usize..9,
         ) {
             let state = |&(cost, x, y): &(f64, f64, f64)| (cost, Point::new(x, y));
             let states: Vec<Vec<(f64, Point)>> = pool.iter().map(|s| s.iter().map(state).collect()).collect();
@@ -117,10 +123,10 @@ mod tests {
             let cost = |path: &[usize]| {
                 let at = |d: usize| candidates[d][path[d]];
                 let points: Vec<&[Point]> = (0..path.len()).map(|d| at(d).points).collect();
-                (0..path.len()).map(|d| at(d).cost).sum::<f64>() + smoothness.of_path(&points)
+                (0..path.len()).map(|d| at(d).cost).sum::<f64>() + smoothness.of_path(&points, &[gap])
             };
             let paths = all_paths(&candidates);
-            for (d, found) in through(&candidates, smoothness).into_iter().enumerate() {
+            for (d, found) in through(&candidates, smoothness, &[gap]).into_iter().enumerate() {
                 prop_assert_eq!(found.len(), candidates[d].len());
                 for (h, found) in found.into_iter().enumerate() {
                     let with = paths.iter().filter(|path| path[d] == h).map(|path| cost(path));

@@ -84,6 +84,19 @@ fn nearer_parts_come_first_and_hide_the_farther_ones() {
 }
 
 #[test]
+fn a_part_hides_nothing_where_it_is_absent() {
+    let recorder = Recorder::default();
+    let mut near = part("near", 2.0, &[0, 10]);
+    near.absent = vec![[3, 5]];
+    let scene = scene(vec![part("far", 0.0, &[2, 6]), near]);
+    Tracker::with_solver(Box::new(recorder.clone())).track(&scene, &NoFrames, &Silent).unwrap();
+    let jobs = recorder.0.lock().unwrap();
+    let far = jobs.iter().find(|job| job.name == "far").expect("a job");
+    assert_eq!(far.occluders.iter().map(Vec::len).collect::<Vec<_>>(), [1, 0, 0, 0, 1]);
+    assert!(jobs.iter().all(|job| job.absent.is_empty() == (job.name == "far")));
+}
+
+#[test]
 fn parts_without_a_span_keep_their_keys() {
     let mut tracker = Tracker::with_solver(Box::new(Recorder::default()));
     let scene = scene(vec![part("none", 0.0, &[]), part("one", 0.0, &[7])]);

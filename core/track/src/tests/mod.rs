@@ -1,6 +1,7 @@
 //! Tests of the complete tracker: order and memory of jobs with a solver that only records, and the default solver on
 //! small drawn scenes of known motion.
 
+mod absence;
 mod borders;
 mod branches;
 mod holds;

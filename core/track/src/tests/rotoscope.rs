@@ -6,7 +6,7 @@ use crate::rotoscope::agarwala2004::Agarwala2004;
 use crate::rotoscope::liang2012::Liang2012;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster, Silent, Span};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -70,7 +70,16 @@ impl FrameSource for Egg {
 
 fn job(keys: [Vec<Point>; 2], closed: bool, span: Span) -> Job {
     let occluders = vec![Vec::new(); span.len()];
-    Job { name: "egg".into(), closed, span, keys, corrections: BTreeMap::new(), occluders, size: SIZE }
+    Job {
+        name: "egg".into(),
+        closed,
+        span,
+        keys,
+        corrections: BTreeMap::new(),
+        absent: BTreeSet::new(),
+        occluders,
+        size: SIZE,
+    }
 }
 
 fn easy() -> Job {

@@ -274,7 +274,7 @@ mod tests {
     use super::*;
     use crate::contract::job::Correction;
     use rototoon_base::scene::{Cancelled, Colour, FrameError, FrameNumber, Silent, Span};
-    use std::collections::BTreeMap;
+    use std::collections::{BTreeMap, BTreeSet};
     use std::sync::Arc;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -314,6 +314,7 @@ mod tests {
             span,
             keys,
             corrections: BTreeMap::new(),
+            absent: BTreeSet::new(),
             occluders: vec![Vec::new(); span.len()],
             size: SIZE,
         }

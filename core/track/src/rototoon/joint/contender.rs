@@ -2,7 +2,7 @@
 
 use crate::rototoon::pool::Pools;
 use crate::rototoon::propagate::Model;
-use crate::shared::drawings::Drawing;
+use crate::shared::drawings::{Drawing, gaps, shown};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Span};
 use std::ops::RangeInclusive;
@@ -38,7 +38,12 @@ impl Contender<'_> {
         [0, self.pools.len() - 1].map(|d| &self.pools[d][0].points[..])
     }
 
-    /// Index of the drawing that a frame shows. `None` if the frame is outside the span.
+    /// The drawings that begin after a gap.
+    pub fn gaps(&self) -> Vec<usize> {
+        gaps(self.drawings)
+    }
+
+    /// Index of the drawing that a frame shows. `None` if the frame is outside the span, or the part is absent there.
     pub fn drawing_at(&self, frame: FrameNumber) -> Option<usize> {
         if frame < self.span.first || frame > self.span.last {
             return None;
@@ -61,7 +66,10 @@ impl Contender<'_> {
         let drawing = &other.drawings[d];
         let [first, last] = [drawing.first, drawing.last].map(|index| other.span.first + index as FrameNumber);
         let (first, last) = (first.max(self.span.first), last.min(self.span.last));
-        if first > last { None } else { Some(self.drawing_at(first)?..=self.drawing_at(last)?) }
+        if first > last {
+            return None;
+        }
+        shown(self.drawings, [first, last].map(|frame| (frame - self.span.first) as usize))
     }
 
     /// First frame of a drawing.

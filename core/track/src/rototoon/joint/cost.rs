@@ -93,7 +93,7 @@ impl Scene<'_> {
         let smooth = |&c: &usize| {
             let pools = paths[c].iter().zip(&**self.contenders[c].pools);
             let points: Vec<&[Point]> = pools.map(|(&h, pool)| &pool[h].points[..]).collect();
-            self.smoothness(c).of_path(&points)
+            self.smoothness(c).of_path(&points, &self.contenders[c].gaps())
         };
         let on = |d: usize| {
             let states: Vec<(usize, State)> = who.iter().map(|&c| (c, (d, paths[c][d]))).collect();

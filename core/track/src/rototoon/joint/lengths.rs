@@ -7,7 +7,7 @@
 //! **Limits.** Of pools with more than [`MOST`] triples on neighbouring drawings nothing is kept.
 
 use crate::rototoon::pool::Pools;
-use crate::rototoon::select::{Motion, Smoothness, mean_bend, mean_shift};
+use crate::rototoon::select::{Motion, Smoothness, bends_over, mean_bend, mean_shift};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -20,6 +20,8 @@ pub struct Lengths {
     /// By drawing of the last hypothesis. Empty where nothing is kept.
     shifts: Vec<Vec<Length>>,
     bends: Vec<Vec<Length>>,
+    /// The drawings that begin after a gap.
+    gaps: Vec<usize>,
 }
 
 /// A length that may be unknown yet. Threads may find it at the same time; all find the same.
@@ -42,8 +44,8 @@ impl Length {
 }
 
 impl Lengths {
-    /// The lengths of these pools, all unknown.
-    pub fn new(pools: &Arc<Pools>) -> Self {
+    /// The lengths of these pools, all unknown. Before these drawings is a gap: across it nothing bends.
+    pub fn new(pools: &Arc<Pools>, gaps: Vec<usize>) -> Self {
         let count = |d: usize| pools[d].len();
         let list = |length: usize| (0..length).map(|_| Length::unknown()).collect();
         let shifts = |d: usize| list(if d < 1 { 0 } else { count(d - 1) * count(d) });
@@ -56,6 +58,7 @@ impl Lengths {
             pools: pools.clone(),
             shifts: drawings.clone().map(shifts).collect(),
             bends: drawings.map(bends).collect(),
+            gaps,
         }
     }
 
@@ -65,6 +68,9 @@ impl Lengths {
     }
 
     fn bend(&self, d: usize, [f, g, h]: [usize; 3]) -> f64 {
+        if bends_over(&self.gaps, d) {
+            return 0.0;
+        }
         let pools = &self.pools;
         let find = || mean_bend(&pools[d - 2][f].points, &pools[d - 1][g].points, &pools[d][h].points);
         let place = (f * pools[d - 1].len() + g) * pools[d].len() + h;
@@ -82,7 +88,7 @@ pub struct Moving<'a> {
 
 impl Motion for Moving<'_> {
     fn speed(&self, d: usize, states: [usize; 2]) -> f64 {
-        self.smoothness.of_shift(self.lengths.shift(d, states))
+        self.smoothness.of_step(self.lengths.shift(d, states), (d, &self.lengths.gaps))
     }
 
     fn acceleration(&self, d: usize, states: [usize; 3]) -> f64 {
@@ -130,11 +136,11 @@ mod tests {
     fn kept_lengths_cost_what_the_points_cost() {
         for counts in [[2, 3, 4], [33, 33, 33]] {
             let pools = pools(counts);
-            let lengths = Lengths::new(&pools);
+            let lengths = Lengths::new(&pools, Vec::new());
             let candidates: Vec<Vec<_>> =
                 pools.iter().map(|pool| pool.iter().map(Hypothesis::candidate).collect()).collect();
             let smoothness = Smoothness::new(30.0);
-            let direct = Direct { candidates: &candidates, smoothness };
+            let direct = Direct { candidates: &candidates, smoothness, gaps: &[] };
             let moving = Moving { lengths: &lengths, smoothness };
             // Twice: found, then known.
             for _ in 0..2 {

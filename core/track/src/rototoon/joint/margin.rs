@@ -45,13 +45,13 @@ fn of_contender(scene: &Scene, c: usize, paths: &Paths) -> Vec<f64> {
             scene.candidates((c, d), &states, paths)
         })
         .collect();
-    let smoothness = scene.smoothness(c);
+    let (smoothness, gaps) = (scene.smoothness(c), &scene.contenders[c].gaps()[..]);
     let chosen: Vec<&[_]> = candidates.iter().map(|states| states[0].points).collect();
-    let present = candidates.iter().map(|states| states[0].cost).sum::<f64>() + smoothness.of_path(&chosen);
+    let present = candidates.iter().map(|states| states[0].cost).sum::<f64>() + smoothness.of_path(&chosen, gaps);
     // A move of one part finds its best path among all hypotheses, so a negative margin is a rounding error, or the
     // path is one that only a move of two parts can leave.
     let margin = |costs: &Vec<f64>| costs[1..].iter().map(|cost| (cost - present).max(0.0)).fold(LARGEST, f64::min);
-    through(&candidates, smoothness).iter().map(margin).collect()
+    through(&candidates, smoothness, gaps).iter().map(margin).collect()
 }
 
 /// The hypotheses of least energy at other places than the hypothesis `own` of a drawing.

@@ -214,7 +214,7 @@ mod tests {
             let costs = pools.iter().map(|(a, b, c)| c[..a.len() * b.len()].to_vec()).collect();
             let candidates = [of(0), of(1)];
             let motion = [(0, 30.0), (1, 70.0)].map(|(part, size)| {
-                Direct { candidates: &candidates[part], smoothness: Smoothness::new(size) }
+                Direct { candidates: &candidates[part], smoothness: Smoothness::new(size), gaps: &[] }
             });
             let counts = [0, 1].map(|part: usize| candidates[part].iter().map(Vec::len).collect());
             let problem = PairProblem { costs, counts, motion };

@@ -120,7 +120,7 @@ impl Memory {
     /// The lengths of motion between the hypotheses of each contender.
     pub fn lengths(&mut self, contenders: &[Contender]) -> Vec<Arc<Lengths>> {
         let of = |c: &Contender| {
-            let new = || (c.pools.clone(), Arc::new(Lengths::new(c.pools)));
+            let new = || (c.pools.clone(), Arc::new(Lengths::new(c.pools, c.gaps())));
             self.lengths.entry(address(c.pools)).or_insert_with(new).1.clone()
         };
         contenders.iter().map(of).collect()

@@ -120,8 +120,8 @@ fn the_margin_is_what_another_place_would_cost_more() {
     };
     let smoothness = Smoothness::new(models[0].texture.mesh.size);
     let places = [0, 2, 0].map(|h| &pools[1][h].points[..]);
-    let still = smoothness.of_path(&[places[0]; 3]);
-    let swung = smoothness.of_path(&[places[0], places[1], places[2]]);
+    let still = smoothness.of_path(&[places[0]; 3], &[]);
+    let swung = smoothness.of_path(&[places[0], places[1], places[2]], &[]);
     let found = margins(&[contender], &Bonds::default(), 0.0, (&[vec![0, 0, 0]], &[true]), &mut Memory::default());
     let expected = 0.04f64.sqrt() - 0.01f64.sqrt() + swung - still;
     assert_eq!((found[0][0], found[0][2]), (LARGEST, LARGEST), "a key has no other place");

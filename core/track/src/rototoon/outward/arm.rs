@@ -5,6 +5,7 @@
 //! 2. If all of these fit much worse than usual, or the part is not trusted, the key's appearance is searched in the
 //!    complete picture.
 //!    So it is where they are on the place of another part, and these are dropped if anything else is found.
+//!    So it is behind frames on which the part is absent. There a jump costs nothing.
 //! 3. If the artist corrected the drawing, every hypothesis is moved to the corrections.
 //! 4. The path of least cost over the last drawings is chosen again. It shows whether the part is still trusted.
 //!
@@ -63,6 +64,8 @@ pub struct Seen {
     pub cover: Cover,
     /// Contours on whose place the part cannot be, in working pixels.
     taken: Vec<Vec<Point>>,
+    /// Whether the part was absent between the drawing before and this one.
+    after_gap: bool,
     /// The artist's correction of the drawing.
     pub correction: Option<Correction>,
     /// The hypotheses; a single one on the key's drawing.
@@ -161,9 +164,17 @@ impl Arm {
 }
 
 impl Growing<'_> {
+    /// The frame, or the next one on which the part is not absent, with its features. None beyond the footage.
     fn read(&self, frame: FrameNumber) -> Result<Option<(FrameNumber, Arc<Features>)>, TrackError> {
-        let [first, last] = self.ground.job.footage;
-        if frame < first || frame > last {
+        let job = self.ground.job;
+        let (footage, absent) = (job.footage[0]..=job.footage[1], |frame| {
+            frame != job.frame && job.absent.iter().any(|&[first, last]| (first..=last).contains(&frame))
+        });
+        let mut frame = frame;
+        while footage.contains(&frame) && absent(frame) {
+            frame += self.step;
+        }
+        if !footage.contains(&frame) {
             return Ok(None);
         }
         let kit = self.ground.kit;
@@ -188,7 +199,7 @@ impl Growing<'_> {
             let Some((frame, _)) = &self.pending else { break };
             let own = job.corrections.get(frame);
             let contradicts = own.is_some() && (is_key || correction.is_some_and(|known| Some(known) != own));
-            if contradicts || !self.is_held(near, far, *frame)? {
+            if *frame != far + self.step || contradicts || !self.is_held(near, far, *frame)? {
                 break;
             }
             correction = correction.or(own);
@@ -207,6 +218,7 @@ impl Growing<'_> {
             features,
             cover,
             taken: if correction.is_none() && !is_key { working(&job.taken) } else { Vec::new() },
+            after_gap: self.drawings.last().is_some_and(|before| before.far + self.step != near),
             correction: correction.cloned(),
             pool: Vec::new(),
             dear: Vec::new(),
@@ -239,7 +251,7 @@ impl Growing<'_> {
         let carried = pool.len();
         let least = pool.iter().map(|h| h.pose.energy).fold(f64::INFINITY, f64::min);
         let taken = pool.iter().any(|h| seen.is_taken(h));
-        if taken || doubtful || least > WORSE.0 * self.usual_energy() + WORSE.1 {
+        if taken || doubtful || seen.after_gap || least > WORSE.0 * self.usual_energy() + WORSE.1 {
             for start in self.searched(seen)? {
                 let pose = model.polished(&seen.scenery(), &start);
                 let new = self.hypothesis(seen, pose);
@@ -251,7 +263,7 @@ impl Growing<'_> {
         if seen.correction.is_some() {
             return Ok(self.constrained(seen, &pool).into_iter().map(|h| (h, 0.0)).collect());
         }
-        let price = |i: usize| if i < carried { 0.0 } else { JUMP };
+        let price = |i: usize| if i < carried || seen.after_gap { 0.0 } else { JUMP };
         let priced: Vec<(Hypothesis, f64)> = pool.into_iter().enumerate().map(|(i, h)| (h, price(i))).collect();
         let (there, free): (Vec<_>, Vec<_>) = priced.into_iter().partition(|(h, _)| seen.is_taken(h));
         Ok(if free.is_empty() { there } else { free })
@@ -365,7 +377,8 @@ impl Growing<'_> {
 
     fn best(&self, from: usize) -> Vec<usize> {
         let candidates: Vec<Vec<Candidate>> = self.drawings[from..].iter().map(Seen::candidates).collect();
-        best_path(&candidates, Smoothness::new(self.ground.model.texture.mesh.size))
+        let gaps: Vec<usize> = (1..candidates.len()).filter(|d| self.drawings[from + d].after_gap).collect();
+        best_path(&candidates, Smoothness::new(self.ground.model.texture.mesh.size), &gaps)
     }
 
     fn sureness(&self, d: usize) -> Sureness {
@@ -386,7 +399,7 @@ impl Growing<'_> {
             // Where the path is smooth and fits on both sides, nothing needs correction.
             let smooth = known.distance(&source) < 0.5 * self.ground.model.texture.mesh.size
                 && known.pose.energy < WORSE.0 * source.pose.energy + WORSE.1;
-            if to.correction.is_some() || (smooth && from.correction.is_none()) {
+            if to.correction.is_some() || from.after_gap || (smooth && from.correction.is_none()) {
                 continue;
             }
             let new = self.hypothesis(to, self.carry(&source, None, from, to)?);

@@ -24,6 +24,9 @@
 //! **Corrections** on any frame other than the key are hard constraints. A corrected frame is trusted: the part is
 //! followed at least to it, also through cuts.
 //!
+//! **Absence.** Frames on which the part is absent are left out. Behind them it may be anywhere: the whole picture is searched, and
+//! the way there costs nothing.
+//!
 //! **Limits.** Parts choose one by one, so only occlusion distinguishes equal limbs that cross. A part that turns its
 //! other side to the viewer is lost there; it needs a new key.
 
@@ -54,6 +57,8 @@ pub struct OutwardJob {
     pub footage: [FrameNumber; 2],
     /// The artist's corrections by frame. The key has none.
     pub corrections: BTreeMap<FrameNumber, Correction>,
+    /// Frames on which the part is not there, by the artist's word, as first and last frames.
+    pub absent: Vec<[FrameNumber; 2]>,
     /// By frame: closed contours of the nearer parts, keyed or tracked.
     pub occluders: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
     /// By frame: contours of other parts on whose place this part cannot be ([`twins`](crate::shared::twins)).

@@ -132,7 +132,10 @@ fn job(
     let corrected: BTreeSet<FrameNumber> = part.pins.keys().chain(part.centers.keys()).copied().collect();
     let correction = |&f: &FrameNumber| {
         let (pins, center) = (part.pins.get(&f).cloned().unwrap_or_default(), part.centers.get(&f).copied());
-        let acts = f != frame && (footage.first..=footage.last).contains(&f) && (!pins.is_empty() || center.is_some());
+        let acts = f != frame
+            && (footage.first..=footage.last).contains(&f)
+            && !part.is_absent(f)
+            && (!pins.is_empty() || center.is_some());
         acts.then_some((f, Correction { pins, center }))
     };
     let nearer: Vec<usize> = (0..scene.parts.len())
@@ -159,6 +162,7 @@ fn job(
         key,
         footage: [footage.first, footage.last],
         corrections: corrected.iter().filter_map(correction).collect(),
+        absent: part.absent.clone(),
         occluders,
         taken: taken.cloned().unwrap_or_default(),
         size: (footage.width, footage.height),
