@@ -18,6 +18,16 @@ pub fn hidden_share(points: &[Point], hides: impl Fn(Point) -> bool) -> f64 {
     count as f64 / places.len().max(1) as f64
 }
 
+/// The share of the inside of a closed contour that is hidden, by the places of a grid. 0 if none of them is inside.
+pub fn hidden_area(points: &[Point], hides: impl Fn(Point) -> bool) -> f64 {
+    const CELLS: usize = 20;
+    let Some((low, high)) = polygon::bounds(points) else { return 0.0 };
+    let cell = |k: usize| (k as f64 + 0.5) / CELLS as f64;
+    let grid = (0..CELLS * CELLS).map(|k| low + (high - low) * Point::new(cell(k % CELLS), cell(k / CELLS)));
+    let inside: Vec<Point> = grid.filter(|place| polygon::contains(points, *place)).collect();
+    inside.iter().filter(|place| hides(**place)).count() as f64 / inside.len().max(1) as f64
+}
+
 /// Whether a place is within one of several contours.
 pub fn is_under(covers: &[Vec<Point>], place: Point) -> bool {
     covers.iter().any(|cover| polygon::contains(cover, place))

@@ -10,13 +10,13 @@
 //! no contour at all: the first frame beyond its track counts as one whole doubt.
 //!
 //! A part is named with the frame if it is not sure there, and the artist has neither keyed nor corrected it there: what was looked at is right. So a frame is
-//! proposed only if such a part is on it. Frames on which such a part is lost come before all others, because an artist sees first what is lost. A part of which nearer parts hide nearly all ([`HIDDEN`]) is not lost but doubtful, and its doubt counts little: a key there shows nothing of it. The frames beside the keys of a part are proposed for it only if there
+//! proposed only if such a part is on it. Frames on which such a part is lost come before all others, because an artist sees first what is lost. A part of which nearer parts hide nearly all ([`HIDDEN`]), but perhaps a tip, is not lost but doubtful, and its doubt counts little: a key there shows nothing of it. The frames beside the keys of a part are proposed for it only if there
 //! are no others, because another key there would correct almost nothing.
 //!
 //! The kernel is the binomial 1 4 6 4 1. It is about two drawings wide for animation on twos. Beyond the keys it meets
 //! zeros, because nothing is in doubt there.
 
-use super::hidden::{covers, hidden_share, is_under};
+use super::hidden::{covers, hidden_area, hidden_share, is_under};
 use rototoon_base::scene::outcome::{LOST, SURE, Verdict, confidence};
 use rototoon_base::scene::{FrameNumber, Part};
 use std::collections::BTreeMap;
@@ -24,9 +24,11 @@ use std::collections::BTreeMap;
 /// Binomial weights around a frame. Their sum is 1.
 const KERNEL: [f64; 5] = [1.0 / 16.0, 4.0 / 16.0, 6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0];
 
-/// Share of the places of a contour that are hidden if nearly all are, and what the doubt about it counts then.
+/// Share of a contour, or of its inside, that is hidden if nearly all is, and what the doubt about it counts then.
 const HIDDEN: f64 = 0.95;
 const HARDLY: f64 = 0.25;
+/// Share of a contour that is hidden if only an end of it may stick out. A part that lies on its twin is hidden inside, but not along half of its contour.
+const BUT_AN_END: f64 = 0.8;
 
 /// A frame with its doubt.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,7 +106,9 @@ fn add_doubt(parts: &[Part], index: usize, doubts: &mut Frames, beside: &mut Fra
 fn is_hidden(parts: &[Part], index: usize, frame: FrameNumber) -> bool {
     let covers = covers(parts, index, frame);
     let points = parts[index].tracks.get(&frame).map_or(&[][..], Vec::as_slice);
-    hidden_share(points, |place| is_under(&covers, place)) >= HIDDEN
+    let hides = |place| is_under(&covers, place);
+    let share = hidden_share(points, hides);
+    share >= HIDDEN || (parts[index].closed && share >= BUT_AN_END && hidden_area(points, hides) >= HIDDEN)
 }
 
 #[cfg(test)]
@@ -206,6 +210,32 @@ mod tests {
             [2],
             "what is seen and lost"
         );
+    }
+
+    #[test]
+    fn a_part_of_which_a_tip_sticks_out_is_behind_another_one_but_its_twin_is_not() {
+        let contour = |list: &[(f64, f64)]| list.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
+        let box_of = |x: f64, y: f64| contour(&[(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)]);
+        let arm = |tip: f64| {
+            let sides = [1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0, 15.0, 17.0];
+            let along = |y: f64| sides.map(|x| (x, y));
+            let all: Vec<(f64, f64)> =
+                along(3.0).into_iter().chain([(tip, 5.0)]).chain(along(7.0).into_iter().rev()).collect();
+            contour(&all)
+        };
+        let hides = |points: Vec<Point>, front: Vec<Point>| {
+            let part = |depth: f64, points: Vec<Point>| Part {
+                closed: true,
+                depth,
+                tracks: [(3, points)].into(),
+                ..Part::default()
+            };
+            is_hidden(&[part(0.0, points), part(1.0, front)], 0, 3)
+        };
+        assert!(hides(arm(19.0), box_of(20.0, 20.0)));
+        assert!(hides(arm(20.5), box_of(20.0, 20.0)), "a tip");
+        assert!(!hides(arm(40.0), box_of(20.0, 20.0)), "a hand");
+        assert!(!hides(box_of(20.0, 10.0), box_of(20.0, 10.0)), "its twin");
     }
 
     #[test]
