@@ -49,6 +49,11 @@ def joints(body: Skeleton) -> set[str]:
     return {chain.points[0] for chain in body.chains if chain.role in _HANGING} - torso
 
 
+def hanging(body: Skeleton) -> set[str]:
+    """Key points of arms, legs and tails."""
+    return {point for chain in body.chains if chain.role in _HANGING for point in chain.points}
+
+
 def label(point: str) -> str:
     """A key point's name in menus."""
     sides = {"l_": "Left ", "r_": "Right "}

@@ -2,7 +2,7 @@
 
 Each line on the limb layer marks one key point. Its ends are near the two sides of a limb, and the key point is between them. A limb
 connects a key point that has a line with the nearest ancestor that has one. A key point may be drawn on several frames; between
-these, the ends of its line slide along the contour. Lines carry the number of their key point in a stroke attribute, so they may be
+these, the ends of its line slide along the contour. Which parts a limb carries is seen between its lines (`carried`). Lines carry the number of their key point in a stroke attribute, so they may be
 moved and copied.
 
 The limbs are kept in the field `limbs` of the object's document.
@@ -21,7 +21,7 @@ from ..blender import placement, selection
 from ..blender.errors import Problem
 from ..capture import document
 from ..common import kept
-from . import bodies
+from . import bodies, carried
 
 LAYER = "Limbs"
 """Name of the layer with the lines."""
@@ -65,16 +65,30 @@ def define(ob, reading: document.Reading) -> list[dict[str, Any]]:
         raise Problem(f'No line on the layer "{LAYER}" has a key point yet: choose one in Define Limbs')
     body = bodies.of(ob)
     ends = {point: _end(body.points[point], drawn, reading.document) for point, drawn in lines.items()}
-    joints, made = bodies.joints(body), []
-    for child in range(1, len(body.points)):
-        parent = _ancestor(body, child, ends)
-        if child in ends and parent is not None:
-            limb = {"from": body.points[parent], "to": body.points[child], "start": ends[parent], "end": ends[child]}
-            if body.points[child] in joints:
-                limb["carries"] = [ends[parent]["points"][0]["part"]]
-            made.append(limb)
+    pairs = [(_ancestor(body, child, ends), child) for child in range(1, len(body.points)) if child in ends]
+    pairs = [(parent, child) for parent, child in pairs if parent is not None]
+    joints, hanging, made = bodies.joints(body), bodies.hanging(body), []
+    parents = {parent for parent, _ in pairs}
+    ways = [_way(lines[a], lines[b], b not in parents and body.points[b] in hanging) for a, b in pairs]
+    for (parent, child), carries in zip(pairs, carried.of(ways, reading.document["parts"])):
+        limb = {"from": body.points[parent], "to": body.points[child], "start": ends[parent], "end": ends[child]}
+        near = [ends[end]["points"][0]["part"] for end in (parent, child)]
+        if body.points[child] in joints:
+            limb["carries"] = carries or near[:1]
+        elif carries and set(carries) != set(near):
+            limb["carries"] = carries
+        made.append(limb)
     keep(ob, made)
     return made
+
+
+def _way(start: dict[int, np.ndarray], end: dict[int, np.ndarray], is_last: bool) -> carried.Way | None:
+    """A limb between its lines on the first frame that has both; `None` without such a frame."""
+    frame = min(set(start) & set(end), default=None)
+    if frame is None:
+        return None
+    width = float(np.linalg.norm(end[frame][1] - end[frame][0]))
+    return carried.Way(frame, start[frame].mean(0), end[frame].mean(0), width, is_last)
 
 
 def _ancestor(body: Skeleton, child: int, ends) -> int | None:
