@@ -4,7 +4,7 @@
 
 use super::instance::{NO_SHAPES, ORIGIN};
 use super::track::BUSY;
-use super::{choosing, edits, fresh, instance, listing, marks, numbering, page, stored, taking_out, track, visits};
+use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -148,7 +148,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
 /// The extension of a file of shapes of another program.
 fn foreign(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-    ["nk", "ntp", "fxs", "svg"].contains(&extension.as_str()).then_some(extension)
+    ShapeFormat::of(&extension, 0).map(|_| extension)
 }
 
 fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> {
@@ -159,19 +159,12 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     };
     // The file has the composition's frames.
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
-    numbering::shift(&mut document.scene, offset);
-    let still = document.scene.footage.first;
-    let format = match extension {
-        "nk" => ShapeFormat::Nuke { still },
-        "ntp" => ShapeFormat::Natron { still },
-        "svg" => ShapeFormat::Svg { still },
-        _ => ShapeFormat::Silhouette,
-    };
+    let format = ShapeFormat::of(extension, document.scene.footage.first);
+    let format = format.ok_or_else(|| told(&"expected a file of shapes"))?;
     let text = file::text(path).map_err(|error| told(&error))?;
-    let warnings = pipeline::import(&mut document, &text, format).map_err(|error| told(&error))?;
-    numbering::shift(&mut document.scene, offset.saturating_neg());
+    let imported = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| told(&error))?;
     edits::store_imported(effect, document, &path.to_string_lossy())?;
-    for warning in warnings.iter().take(MOST_WARNINGS) {
+    for warning in imported.warnings.iter().take(MOST_WARNINGS).chain(&imported.told()) {
         instance(effect)?.note(effect, warning, false);
     }
     Ok(())
