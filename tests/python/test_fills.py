@@ -98,6 +98,18 @@ def test_the_constant_is_that_of_the_library(film):
         assert [each.doubtful for each in session.filled().on(0)] == [sure < fills.DOUBT for sure in unsure]
 
 
+def test_a_click_without_a_colour_keeps_a_region_without_paint(film):
+    clicks = [Click(0, (30, 30), RED), Click(0, (60, 60), None)]
+    with opened(film) as session:
+        filled = session.fill(clicks)
+        assert [click.colour for click in session.fills()] == [pytest.approx(RED), None]
+        assert session.document()["fills"][0]["regions"][1]["colour"] is None
+        for frame in range(4):
+            # The paper around the square was not clicked, and has no paint either.
+            (square,) = filled.on(frame)
+            assert square.colour == pytest.approx(RED) and len(square.holes) == 1
+
+
 def test_a_range_leaves_the_other_frames(film):
     with opened(film) as session:
         session.fill(CLICKS, frames=(0, 1))
