@@ -58,7 +58,7 @@ pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
 pub use untracked::untracked;
 
-use crate::export::{self, SvgOptions, svg_with_drawn};
+use crate::export::{self, Detail, SvgOptions, svg_with_drawn};
 use crate::fit;
 use crate::geometry::Point;
 use crate::pictures::Sequence;
@@ -222,36 +222,34 @@ pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, P
     Ok(svg_with_drawn(&document.scene, &fills, &strokes, options))
 }
 
-/// Exports the document as a RotoPaint node for Nuke. Points of snapped paths are about `spacing` pixels apart.
-pub fn export_nuke(document: &Document, spacing: f64) -> String {
-    export::nuke(&document.scene, spacing)
+/// Exports the document as a RotoPaint node for Nuke. `detail` says how it follows snapped paths.
+pub fn export_nuke(document: &Document, detail: impl Into<Detail>) -> String {
+    export::nuke(&document.scene, detail)
 }
 
-/// Exports the document as a script that makes a Roto node in Natron. Points of snapped paths are about `spacing` pixels
-/// apart.
-pub fn export_natron(document: &Document, spacing: f64) -> String {
-    export::natron(&document.scene, spacing)
+/// Exports the document as a script that makes a Roto node in Natron. `detail` says how it follows snapped paths.
+pub fn export_natron(document: &Document, detail: impl Into<Detail>) -> String {
+    export::natron(&document.scene, detail)
 }
 
-/// Exports the document as a project of Natron with a Roto node. Points of snapped paths are about `spacing` pixels apart.
-pub fn export_natron_project(document: &Document, spacing: f64) -> String {
-    export::natron_project(&document.scene, spacing)
+/// Exports the document as a project of Natron with a Roto node. `detail` says how it follows snapped paths.
+pub fn export_natron_project(document: &Document, detail: impl Into<Detail>) -> String {
+    export::natron_project(&document.scene, detail)
 }
 
-/// Exports the document as a script that makes masks in After Effects. Points of snapped paths are about `spacing` pixels
-/// apart.
-pub fn export_after_effects(document: &Document, spacing: f64) -> String {
-    export::after_effects(&document.scene, spacing)
+/// Exports the document as a script that makes masks in After Effects. `detail` says how it follows snapped paths.
+pub fn export_after_effects(document: &Document, detail: impl Into<Detail>) -> String {
+    export::after_effects(&document.scene, detail)
 }
 
-/// Exports the document as Silhouette shapes. Points of snapped paths are about `spacing` pixels apart.
-pub fn export_silhouette(document: &Document, spacing: f64) -> String {
-    export::silhouette(&document.scene, spacing)
+/// Exports the document as Silhouette shapes. `detail` says how it follows snapped paths.
+pub fn export_silhouette(document: &Document, detail: impl Into<Detail>) -> String {
+    export::silhouette(&document.scene, detail)
 }
 
-/// Exports the document as Polygon masks for Fusion. Points of snapped paths are about `spacing` pixels apart.
-pub fn export_fusion(document: &Document, spacing: f64) -> String {
-    export::fusion(&document.scene, spacing)
+/// Exports the document as Polygon masks for Fusion. `detail` says how it follows snapped paths.
+pub fn export_fusion(document: &Document, detail: impl Into<Detail>) -> String {
+    export::fusion(&document.scene, detail)
 }
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a

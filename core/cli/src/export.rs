@@ -2,8 +2,8 @@
 
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
-use clap::{ArgMatches, Command};
-use rototoon::export::{Motion, SvgOptions, svg};
+use clap::{Arg, ArgMatches, Command};
+use rototoon::export::{Detail, Motion, SvgOptions, svg};
 use rototoon::import::too_large;
 use rototoon::pipeline::{self, Excerpt};
 use rototoon::project::write_whole;
@@ -19,6 +19,14 @@ pub fn command() -> Command {
             "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette), FILE.setting (Fusion) or FILE.json",
         ))
         .args(arguments::of_stage(Stage::Export))
+        .arg(
+            Arg::new("bezier")
+                .long("bezier")
+                .value_name("PX")
+                .help("Writes snapped parts as Bézier curves with handles, within this many pixels of their paths: few points, the same ones on every frame. Instead of --spacing; 0.5 is a good start")
+                .conflicts_with("spacing")
+                .value_parser(arguments::within(0.05, 100.0)),
+        )
         .arg(arguments::frames())
         .arg(arguments::frame_offset(
             "What is added to the numbers of the frames: with 1000, frame 1 becomes 1001. Not for .svg and .jsx, which count from their own beginning",
@@ -42,6 +50,11 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
         _ => &["motion"],
     };
     arguments::without(given, unused, &format!("for a .{extension} file"))?;
+    if let Some(bezier) = bezier(given).filter(|_| extension == "json") {
+        return Err(Failure::Use(format!(
+            "found --bezier {bezier}: expected no such option for a .json file, which keeps the snapped paths"
+        )));
+    }
     let offset = arguments::offset(given);
     if offset != 0 && ["svg", "jsx"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!(
@@ -54,6 +67,11 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
         ));
     }
     Ok(extension)
+}
+
+/// How far Bézier curves may be from snapped paths; `None` for points with straight sides.
+fn bezier(given: &ArgMatches) -> Option<f64> {
+    given.get_one::<f64>("bezier").copied()
 }
 
 /// What is asked for of the document.
@@ -91,17 +109,18 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
-    let spacing = arguments::number(given, "spacing");
+    let (spacing, bezier) = (arguments::number(given, "spacing"), bezier(given));
+    let detail = bezier.map_or(Detail::Spacing(spacing), Detail::Bezier);
     let text = match extension.as_str() {
-        "nk" => pipeline::export_nuke(&document, spacing),
-        "ntp" => pipeline::export_natron_project(&document, spacing),
-        "py" => pipeline::export_natron(&document, spacing),
-        "jsx" => pipeline::export_after_effects(&document, spacing),
-        "fxs" => pipeline::export_silhouette(&document, spacing),
-        "setting" => pipeline::export_fusion(&document, spacing),
+        "nk" => pipeline::export_nuke(&document, detail),
+        "ntp" => pipeline::export_natron_project(&document, detail),
+        "py" => pipeline::export_natron(&document, detail),
+        "jsx" => pipeline::export_after_effects(&document, detail),
+        "fxs" => pipeline::export_silhouette(&document, detail),
+        "setting" => pipeline::export_fusion(&document, detail),
         // Regions and strokes belong to no part.
-        _ if asked.parts.is_some() => svg(&document.scene, &SvgOptions { motion, spacing }),
-        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing })
+        _ if asked.parts.is_some() => svg(&document.scene, &SvgOptions { motion, spacing, bezier }),
+        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing, bezier })
             .map_err(|error| Failure::of(error, from))?,
     };
     write_whole(to, text.as_bytes())?;

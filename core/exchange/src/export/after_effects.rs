@@ -5,8 +5,8 @@
 //! selected, which must have the footage's size. If no layer is selected, it makes a composition with a white solid. All of
 //! it is one step of undo.
 //!
-//! A mask has a key of its path on every frame on which the part has a contour. The tangents are left out, so the sides
-//! are straight like those of the part. Coordinates are those of the layer: pixels with x right and y down from the upper
+//! A mask has a key of its path on every frame on which the part has a contour. Tangents are relative to their vertices; a part with
+//! straight sides has none. Coordinates are those of the layer: pixels with x right and y down from the upper
 //! left corner, as in the footage. Times are seconds from the layer's start. The nearest part is the uppermost mask.
 //! A feather is smooth in After Effects, or linear where the part's falloff is. Where a part has no contour, the opacity of its mask is 0; its keys hold.
 //!
@@ -16,7 +16,7 @@
 //! layer whose time is remapped or stretched is refused, because its frames are not those of the footage.
 
 use super::coordinate;
-use super::outlines::Outlines;
+use super::outlines::{Detail, Keys, Knot, Outlines};
 use rototoon_base::scene::{FalloffCurve, FrameNumber, Part, Scene};
 use std::fmt::Write;
 
@@ -25,7 +25,8 @@ const HEAD: &str = "// Shapes of Rototoon for After Effects. Select the footage'
 // It adds a mask for each part. If no layer is selected, it makes a composition with a solid.
 
 // Size, frame rate and number of frames of the footage; for each part its name, whether it is closed, its colour, and by
-// frame, counted from 0, x and y of each point in pixels with y down. Parts have no contour on other frames.
+// frame, counted from 0, x and y of each point in pixels with y down. Parts have no contour on other frames. If a part is bent, each
+// point is followed by x and y of the tangents before and after it, relative to the point.
 var ROTOTOON = ";
 
 const CODE: &str = r#";
@@ -53,11 +54,19 @@ function rototoonNewLayer() {
 }
 
 function rototoonShape(part, numbers) {
-    var shape = new Shape(), vertices = [];
-    for (var k = 0; k < numbers.length; k += 2) {
+    var shape = new Shape(), vertices = [], before = [], after = [], size = part.bent ? 6 : 2;
+    for (var k = 0; k < numbers.length; k += size) {
         vertices.push([numbers[k], numbers[k + 1]]);
+        if (part.bent) {
+            before.push([numbers[k + 2], numbers[k + 3]]);
+            after.push([numbers[k + 4], numbers[k + 5]]);
+        }
     }
     shape.vertices = vertices;
+    if (part.bent) {
+        shape.inTangents = before;
+        shape.outTangents = after;
+    }
     shape.closed = part.closed;
     return shape;
 }
@@ -122,8 +131,9 @@ try {
 }
 "#;
 
-/// The scene's parts as a script for After Effects. Points of snapped paths are about `spacing` pixels apart.
-pub fn after_effects(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a script for After Effects. `detail` says how they follow snapped paths.
+pub fn after_effects(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let footage = &scene.footage;
     let frames = i64::from(footage.last) - i64::from(footage.first) + 1;
     let (width, height, fps) = (footage.width, footage.height, footage.fps);
@@ -132,32 +142,33 @@ pub fn after_effects(scene: &Scene, spacing: f64) -> String {
         write!(out, "{{\"width\": {width}, \"height\": {height}, \"fps\": {fps}, \"frames\": {frames}, \"parts\": [");
     let mut any = false;
     for index in super::nearest_first(scene) {
-        let keys = Outlines::new(&scene.parts[index], spacing).within(footage.first, footage.last);
+        let outlines = Outlines::new(&scene.parts[index], detail);
+        let keys = outlines.within(footage.first, footage.last);
         if keys.is_empty() {
             continue;
         }
         out += if any { ",\n" } else { "\n" };
         any = true;
-        part(&mut out, &scene.parts[index], index, footage.first, &keys);
+        part(&mut out, (&scene.parts[index], index), footage.first, (&keys, outlines.bent()));
     }
     out + "\n]}" + CODE
 }
 
-type Keys = [(FrameNumber, Vec<rototoon_base::geometry::Point>)];
-
-fn part(out: &mut String, part: &Part, index: usize, first: FrameNumber, keys: &Keys) {
+fn part(out: &mut String, (part, index): (&Part, usize), first: FrameNumber, (keys, bent): (&Keys, bool)) {
     let [r, g, b] = part.shown_colour(index);
     let (name, closed) = (literal(&part.name), part.closed);
     let linear = part.falloff.curve == Some(FalloffCurve::Linear);
     let falloff = if linear { "\"falloff\": \"linear\", " } else { "" };
+    let kind = if bent { "\"bent\": true, " } else { "" };
     let _ = write!(
         out,
-        "{{\"name\": {name}, \"closed\": {closed}, \"color\": [{r:.3}, {g:.3}, {b:.3}], {falloff}\"frames\": ["
+        "{{\"name\": {name}, \"closed\": {closed}, \"color\": [{r:.3}, {g:.3}, {b:.3}], {falloff}{kind}\"frames\": ["
     );
-    for (k, (frame, points)) in keys.iter().enumerate() {
+    let places = |knot: &Knot| if bent { vec![knot.at, knot.before, knot.after] } else { vec![knot.at] };
+    for (k, (frame, knots)) in keys.iter().enumerate() {
         let frame = i64::from(*frame) - i64::from(first);
         *out += if k > 0 { ",\n  " } else { "\n  " };
-        let numbers = points.iter().flat_map(|p| [coordinate(p.x), coordinate(p.y)]);
+        let numbers = knots.iter().flat_map(places).flat_map(|p| [coordinate(p.x), coordinate(p.y)]);
         let _ = write!(out, "[{frame}, [{}]]", numbers.collect::<Vec<_>>().join(", "));
     }
     *out += "]}";

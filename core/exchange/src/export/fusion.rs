@@ -6,7 +6,8 @@
 //! on the frame of a change and on the one before it, so whole frames are exact.
 //!
 //! Coordinates begin in the middle of the picture, x to the right and y up; the unit is the width of the picture for x, and its height for
-//! y. Points are linear without handles, so sides are straight like those of the part. The key frames are those of the document.
+//! y. Points with straight sides are linear, without handles; those of curves have handles (`LX`, `LY` before
+//! the point, `RX`, `RY` after it), relative to the point. The key frames are those of the document.
 //!
 //! Names of tools have letters of English, digits and underscores, and begin with none of the digits.
 //!
@@ -16,7 +17,7 @@
 //! whole mask in Fusion and is left at 0. Fusion itself has not been tried.
 
 use super::names::joined;
-use super::outlines::{Outlines, turning};
+use super::outlines::{Detail, Keys, Knot, Outlines, turning};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Scene};
@@ -27,15 +28,17 @@ const STEP: usize = 110;
 /// Tools in a row of the flow.
 const ROW: usize = 8;
 
-/// The scene's parts as a setting of Fusion. Points of snapped paths are about `spacing` pixels apart.
-pub fn fusion(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a setting of Fusion. `detail` says how they follow snapped paths.
+pub fn fusion(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let names = joined(scene, "_", plain);
     let mut tools = Vec::new();
     for index in super::nearest_first(scene) {
-        let keys = Outlines::new(&scene.parts[index], spacing).within(scene.footage.first, scene.footage.last);
+        let outlines = Outlines::new(&scene.parts[index], detail);
+        let keys = outlines.within(scene.footage.first, scene.footage.last);
         if !keys.is_empty() {
             let at = (STEP * (tools.len() % ROW), STEP / 2 * (tools.len() / ROW));
-            tools.push(tool(scene, (index, &names), &keys, at));
+            tools.push(tool(scene, (index, &names), (&keys, outlines.bent()), at));
         }
     }
     format!("{{\n\tTools = ordered() {{\n{}\n\t}}\n}}\n", tools.join(",\n"))
@@ -63,7 +66,7 @@ fn companion(names: &[String], index: usize, what: &str) -> String {
 fn tool(
     scene: &Scene,
     (index, names): (usize, &[String]),
-    keys: &[(FrameNumber, Vec<Point>)],
+    (keys, bent): (&Keys, bool),
     (left, top): (usize, usize),
 ) -> String {
     let (part, footage, name) = (&scene.parts[index], &scene.footage, &names[index]);
@@ -95,8 +98,8 @@ fn tool(
     let _ = writeln!(out, "\t\t\t}},\n\t\t\tViewInfo = OperatorInfo {{ Pos = {{ {left}, {top} }} }},");
     let _ = writeln!(out, "\t\t\tColors = {{ TileColor = {{ R = {r}, G = {g}, B = {b} }} }}\n\t\t}},");
     let shapes = turning(keys);
-    let shapes =
-        shapes.iter().enumerate().map(|(k, (frame, points))| (*frame, k, Some(polyline(points, part.closed, footage))));
+    let shape_of = |knots: &[Knot]| polyline(knots, bent, part.closed, footage);
+    let shapes = shapes.iter().enumerate().map(|(k, (frame, knots))| (*frame, k, Some(shape_of(knots))));
     out += &spline(&shape, shapes);
     if changes.len() > 1 {
         out += ",\n";
@@ -132,17 +135,17 @@ fn spline(name: &str, keys: impl Iterator<Item = (FrameNumber, usize, Option<Str
     format!("\t\t{name} = BezierSpline {{\n\t\t\t{head}\n\t\t\tKeyFrames = {{\n{}\n\t\t\t}}\n\t\t}}", keys.join(",\n"))
 }
 
-fn polyline(points: &[Point], closed: bool, footage: &Footage) -> String {
-    let size = Point::new(footage.width as f64, footage.height as f64);
-    let point = |p: &Point| {
-        let at = (*p / size - 0.5) * Point::new(1.0, -1.0);
-        format!(
-            "\t\t\t\t\t{{ Linear = true, X = {}, Y = {}, LX = 0, LY = 0, RX = 0, RY = 0 }}",
-            number(at.x),
-            number(at.y)
-        )
+/// A shape. Points of bent ones have handles, also where these are 0, so that a point has one kind on all frames.
+fn polyline(knots: &[Knot], bent: bool, closed: bool, footage: &Footage) -> String {
+    let size = Point::new(footage.width as f64, footage.height as f64) * Point::new(1.0, -1.0);
+    let kind = if bent { "" } else { "Linear = true, " };
+    let point = |knot: &Knot| {
+        let at = knot.at / size + Point::new(-0.5, 0.5);
+        let [[x, y], [lx, ly], [rx, ry]] =
+            [at, knot.before / size, knot.after / size].map(|p| [number(p.x), number(p.y)]);
+        format!("\t\t\t\t\t{{ {kind}X = {x}, Y = {y}, LX = {lx}, LY = {ly}, RX = {rx}, RY = {ry} }}")
     };
-    let points: Vec<String> = points.iter().map(point).collect();
+    let points: Vec<String> = knots.iter().map(point).collect();
     let closed = if closed { "Closed = true, " } else { "" };
     format!("Polyline {{ {closed}Points = {{\n{}\n\t\t\t\t}} }}", points.join(",\n"))
 }

@@ -3,6 +3,7 @@
 //! - [`svg`](mod@svg): one animated path for each part and each stroke
 //! - [`after_effects`](mod@after_effects): a script that makes masks in After Effects
 //! - [`archive`]: writes the XML archives of Boost
+//! - `bezier`: snapped contours as Bézier curves of few points
 //! - [`fusion`](mod@fusion): Polygon masks for Fusion
 //! - [`natron`](mod@natron): a script that makes a Roto node in Natron
 //! - [`natron_project`](mod@natron_project): a project of Natron with a Roto node
@@ -15,6 +16,7 @@
 
 pub mod after_effects;
 pub mod archive;
+mod bezier;
 pub mod fusion;
 mod names;
 pub mod natron;
@@ -31,6 +33,7 @@ pub use fusion::fusion;
 pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;
+pub use outlines::Detail;
 pub use silhouette::silhouette;
 pub use svg::{Motion, SvgFill, SvgOptions, SvgStroke, svg, svg_with_drawn};
 

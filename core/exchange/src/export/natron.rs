@@ -3,8 +3,8 @@
 //! The script adds a node to an open project; [`natron_project`](mod@super::natron_project) makes a project of its own. The script
 //! uses what Natron offers to scripts, and makes the same calls as the scripts that Natron itself writes for a group with a
 //! Roto node. Each part is a Bézier curve in the base layer; the farthest comes first, since the node draws in this
-//! order. A curve has a key on every frame on which the part has a contour. Both handles and the feather's point are at
-//! the point, so the sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is
+//! order. A curve has a key on every frame on which the part has a contour. Handles are places; where sides are straight, both are at
+//! the point. The feather's point and its handles are those of the point, so the feather, which Natron begins with 1.5 pixels, is
 //! none. Of the falloff of a soft border it has the rate: Natron too raises its ramp to it. Scripts cannot choose the ramp.
 //! Coordinates are pixels with x right and y up. Where a part is not there its curve is not active. For
 //! that its life time is *Custom*, the last of the choices: others ignore the parameter that says whether it is active.
@@ -15,8 +15,9 @@
 //! Limits: Natron offers scripts no open curves; an open part becomes a curve that is not closed yet, and has no matte.
 
 use super::coordinate;
-use super::outlines::Outlines;
+use super::outlines::{Detail, Knot, Outlines};
 use super::presence::presence;
+use rototoon_base::geometry::Point;
 use rototoon_base::scene::Scene;
 use std::fmt::Write;
 
@@ -27,25 +28,28 @@ const HEAD: &str = "# -*- coding: utf-8 -*-
 # It makes one Roto node.
 
 # Label, whether the shape is closed, its colour in the viewer, the falloff of its feather, and for each frame x and y of each
-# point, in pixels with y up. Then the frames on which the shape comes (1) or goes (0).
+# point, in pixels with y up. Then the frames on which the shape comes (1) or goes (0). True at the end: each point is followed by x and
+# y of the handles before and after it.
 SHAPES = [
 ";
 
 const CODE: &str = "]
 
 
-def rototoon_shape(roto, layer, label, closed, colour, falloff, frames, changes):
+def rototoon_shape(roto, layer, label, closed, colour, falloff, frames, changes, bent=False):
     bezier = roto.createBezier(0, 0, frames[0][0])
     bezier.setLabel(label)
     layer.addItem(bezier)
-    count = len(frames[0][1]) // 2
+    size = 6 if bent else 2
+    count = len(frames[0][1]) // size
     for _ in range(count - 1):
         bezier.addControlPoint(0, 0)
     for frame, numbers in frames:
         for k in range(count):
-            x, y = numbers[2 * k], numbers[2 * k + 1]
-            bezier.setPointAtIndex(k, frame, x, y, x, y, x, y)
-            bezier.setFeatherPointAtIndex(k, frame, x, y, x, y, x, y)
+            own = numbers[size * k:size * k + size]
+            places = own if bent else own * 3
+            bezier.setPointAtIndex(k, frame, *places)
+            bezier.setFeatherPointAtIndex(k, frame, *places)
     if closed:
         bezier.setCurveFinished(True)
     bezier.getFeatherDistanceParam().setValue(0, 0)
@@ -79,34 +83,42 @@ rototoon_shapes(app)
 /// Natron's greatest falloff.
 pub(super) const MOST_FALLOFF: f64 = 5.0;
 
-/// The scene's parts as a script for Natron. Points of snapped paths are about `spacing` pixels apart.
-pub fn natron(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a script for Natron. `detail` says how they follow snapped paths.
+pub fn natron(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let (first, last, height) = (scene.footage.first, scene.footage.last, scene.footage.height as f64);
     let mut out = String::from(HEAD);
     for index in super::nearest_first(scene).into_iter().rev() {
         let part = &scene.parts[index];
-        let keys = Outlines::new(part, spacing).within(first, last);
+        let outlines = Outlines::new(part, detail);
+        let keys = outlines.within(first, last);
         if keys.is_empty() {
             continue;
         }
-        let closed = if part.closed { "True" } else { "False" };
+        let (closed, bent) = (python(part.closed), if outlines.bent() { ", True" } else { "" });
         let [r, g, b] = part.shown_colour(index).map(|value| coordinate(value.into()));
         let rate = coordinate(part.falloff.rate.min(MOST_FALLOFF));
         let _ = writeln!(out, "    ({}, {closed}, ({r}, {g}, {b}), {rate}, [", literal(&part.name));
-        for (frame, points) in &keys {
-            let _ = write!(out, "        ({frame}, [");
-            for (k, p) in points.iter().enumerate() {
-                let comma = if k > 0 { ", " } else { "" };
-                let _ = write!(out, "{comma}{}, {}", coordinate(p.x), coordinate(height - p.y));
-            }
-            out += "]),\n";
+        let numbers = |knot: &Knot| {
+            let [before, after] = knot.handles();
+            let places = if outlines.bent() { &[knot.at, before, after][..] } else { &[knot.at] };
+            let place = |p: &Point| format!("{}, {}", coordinate(p.x), coordinate(height - p.y));
+            places.iter().map(place).collect::<Vec<_>>().join(", ")
+        };
+        for (frame, knots) in &keys {
+            let numbers: Vec<_> = knots.iter().map(numbers).collect();
+            let _ = writeln!(out, "        ({frame}, [{}]),", numbers.join(", "));
         }
         let changes = presence(part, &keys, &scene.footage).into_iter();
         let changes: Vec<_> = changes.map(|(frame, there)| format!("({frame}, {})", u8::from(there))).collect();
         // A list of one thing needs no comma in Python.
-        let _ = writeln!(out, "    ], [{}]),", changes.join(", "));
+        let _ = writeln!(out, "    ], [{}]{bent}),", changes.join(", "));
     }
     out + CODE
+}
+
+fn python(value: bool) -> &'static str {
+    if value { "True" } else { "False" }
 }
 
 /// A text for Python 2 and 3, in ASCII.
@@ -130,7 +142,6 @@ fn literal(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon_base::geometry::Point;
     use rototoon_base::scene::{Falloff, Footage, Part};
     use std::collections::BTreeMap;
 

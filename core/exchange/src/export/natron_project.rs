@@ -6,8 +6,8 @@
 //! project keep their defaults; so only the format, the frames and the rate of the footage are there.
 //!
 //! The parts are Bézier curves of the base layer, the farthest first, since the node draws in this order. A curve has a key on
-//! every frame on which the part has a contour, but for those on which it is held, and goes evenly between keys. Handles and the feather's points are at the
-//! points, so sides are straight like those of the part, and the feather, which Natron begins with 1.5 pixels, is none. Of the falloff
+//! every frame on which the part has a contour, but for those on which it is held, and goes evenly between keys. The handle before a point is its left one. Where sides are
+//! straight, handles are at their points. The feather's points are those of the curve, so the feather, which Natron begins with 1.5 pixels, is none. Of the falloff
 //! of a soft border it has the rate.
 //! Coordinates are pixels with x right and y up. Where a part is not there its curve is not active: a
 //! parameter with keys says so, and the curve's life time is *Custom*, since other life times ignore that parameter.
@@ -26,7 +26,7 @@ use super::archive::{Archive, Class};
 use super::coordinate;
 use super::names::written;
 use super::natron::MOST_FALLOFF;
-use super::outlines::{Outlines, turning};
+use super::outlines::{Detail, Keys, Knot, Outlines, turning};
 use super::presence::presence;
 use super::xml::plain;
 use rototoon_base::geometry::Point;
@@ -67,8 +67,9 @@ const RECTANGLE: Class = Class("RectI", 0);
 /// A time and a value.
 type Key = (FrameNumber, f64);
 
-/// The scene's parts as a project of Natron. Points of snapped paths are about `spacing` pixels apart.
-pub fn natron_project(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a project of Natron. `detail` says how they follow snapped paths.
+pub fn natron_project(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let mut out = Archive::new(BOOST);
     out.flag("Background_project", true);
     out.object("Project", PROJECT, |out| {
@@ -81,7 +82,7 @@ pub fn natron_project(scene: &Scene, spacing: f64) -> String {
         out.value("Bits", 64);
         out.object("NodesCollection", NODES, |out| {
             out.value("NodesCount", 1);
-            out.object("item", NODE, |out| node(out, scene, spacing));
+            out.object("item", NODE, |out| node(out, scene, detail));
         });
         settings(out, &scene.footage);
         out.value("Timeline_current_time", scene.footage.first);
@@ -114,7 +115,7 @@ fn settings(out: &mut Archive, footage: &Footage) {
 }
 
 /// The Roto node.
-fn node(out: &mut Archive, scene: &Scene, spacing: f64) {
+fn node(out: &mut Archive, scene: &Scene, detail: Detail) {
     out.text("Plugin_label", "Rototoon");
     out.text("Plugin_script_name", "Roto1");
     out.text("Plugin_id", "fr.inria.built-in.Roto");
@@ -127,7 +128,7 @@ fn node(out: &mut Archive, scene: &Scene, spacing: f64) {
     out.value("KnobsAge", 0);
     out.text("MasterNode", "");
     out.flag("HasRotoContext", true);
-    out.object("RotoContext", CONTEXT, |out| context(out, scene, spacing));
+    out.object("RotoContext", CONTEXT, |out| context(out, scene, detail));
     out.flag("HasTrackerContext", false);
     out.text("MultiInstanceParent", "");
     for tag in ["UserPagesCount", "PagesCount", "Children"] {
@@ -138,9 +139,9 @@ fn node(out: &mut Archive, scene: &Scene, spacing: f64) {
 }
 
 /// The shapes of the node.
-fn context(out: &mut Archive, scene: &Scene, spacing: f64) {
+fn context(out: &mut Archive, scene: &Scene, detail: Detail) {
     let footage = &scene.footage;
-    let contours = |index: usize| Outlines::new(&scene.parts[index], spacing).within(footage.first, footage.last);
+    let contours = |index: usize| Outlines::new(&scene.parts[index], detail).within(footage.first, footage.last);
     let names = written(scene, plain);
     let farthest_first = super::nearest_first(scene).into_iter().rev();
     let shapes: Vec<_> = farthest_first.map(|index| (index, contours(index))).filter(|(_, k)| !k.is_empty()).collect();
@@ -185,7 +186,7 @@ fn drawable(
     out: &mut Archive,
     (name, label): (&str, &str),
     part: &Part,
-    keys: &[(FrameNumber, Vec<Point>)],
+    keys: &Keys,
     footage: &Footage,
     [red, green, blue]: [f64; 3],
 ) {
@@ -209,7 +210,7 @@ fn drawable(
 }
 
 /// Keys of the parameter that says whether a curve is active; none if it always is.
-fn activity(part: &Part, keys: &[(FrameNumber, Vec<Point>)], footage: &Footage) -> Vec<Key> {
+fn activity<T>(part: &Part, keys: &[(FrameNumber, T)], footage: &Footage) -> Vec<Key> {
     let changes = presence(part, keys, footage);
     if changes.len() < 2 {
         return Vec::new();
@@ -261,18 +262,24 @@ fn parameter(out: &mut Archive, tag: &str, name: &str, kind: &str, values: &[Val
 }
 
 /// The control points, each with the feather's point. `height` turns y up.
-fn points(out: &mut Archive, keys: &[(FrameNumber, Vec<Point>)], height: f64) {
+fn points(out: &mut Archive, keys: &Keys, height: f64) {
     let count = keys[0].1.len();
     out.value("NumPoints", count);
     for index in 0..count {
         // As scripts take them, so both ways give the same shape.
         let rounded = |value: f64| coordinate(value).parse().unwrap_or(value);
-        let x: Vec<Key> = keys.iter().map(|(frame, points)| (*frame, rounded(points[index].x))).collect();
-        let y: Vec<Key> = keys.iter().map(|(frame, points)| (*frame, rounded(height - points[index].y))).collect();
+        let channels = |place: &dyn Fn(&Knot) -> Point| -> [Vec<Key>; 2] {
+            let of = |value: &dyn Fn(Point) -> f64| {
+                keys.iter().map(|(frame, knots)| (*frame, rounded(value(place(&knots[index]))))).collect()
+            };
+            [of(&|p| p.x), of(&|p| height - p.y)]
+        };
+        let places =
+            [channels(&|knot| knot.at), channels(&|knot| knot.handles()[0]), channels(&|knot| knot.handles()[1])];
         for tag in ["CP", "FP"] {
             out.object(tag, CONTROL_POINT, |out| {
-                for place in ["", "Left_", "Right_"] {
-                    for (axis, keys) in [("X", &x), ("Y", &y)] {
+                for (place, channels) in ["", "Left_", "Right_"].into_iter().zip(&places) {
+                    for (axis, keys) in ["X", "Y"].into_iter().zip(channels) {
                         out.value(&format!("{place}{axis}"), keys[0].1);
                         curve(out, &format!("{place}{axis}_animation"), keys, LINEAR);
                     }

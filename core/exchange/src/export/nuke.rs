@@ -2,7 +2,7 @@
 //!
 //! Each part is a Bézier shape in the root layer; the nearest comes first, as in the node's list. A point consists of
 //! three pairs of numbers: the handle before it, its position, and the handle after it. Handles are relative to their
-//! point. They are zero, so the sides are straight like those of the part. If a part has several frames, each number
+//! point. They are zero where the sides are straight. If a part has several frames, each number
 //! that changes is a curve of keys `{{frame value} …}`. Where the number stays the same for several frames, two keys at each end hold
 //! it: the format's keys have no kind of way to the next one here, and with two of them no smooth way swings between. Coordinates are pixels with x right, y up and the origin at the
 //! lower left. The lifetime of a shape is the range of its frames. Where a part is not there between its frames, the opacity
@@ -13,7 +13,7 @@
 //! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
 
 use super::names::written;
-use super::outlines::Outlines;
+use super::outlines::{Detail, Keys, Knot, Outlines};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
@@ -26,8 +26,9 @@ const OPEN: u32 = 32;
 /// Type of lifetime: a range of frames.
 const FRAME_RANGE: f64 = 4.0;
 
-/// The scene's parts as a RotoPaint node. Points of snapped paths are about `spacing` pixels apart.
-pub fn nuke(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a RotoPaint node. `detail` says how they follow snapped paths.
+pub fn nuke(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let (width, height) = (scene.footage.width, scene.footage.height);
     let mut out = String::from("set cut_paste_input [stack 0]\nversion 7.0 v1\nRotoPaint {\n inputs 0\n");
     let _ = writeln!(out, " format \"{width} {height} 0 0 {width} {height} 1 \"");
@@ -39,29 +40,33 @@ pub fn nuke(scene: &Scene, spacing: f64) -> String {
     );
     let names = written(scene, plain);
     for index in super::nearest_first(scene) {
-        shape(&mut out, scene, (index, &names[index]), spacing);
+        shape(&mut out, scene, (index, &names[index]), detail);
     }
     out + "}}}}\n name Rototoon\n}\n"
 }
 
-fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing: f64) {
+fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), detail: Detail) {
     let part = &scene.parts[index];
-    let keys = Outlines::new(part, spacing).within(scene.footage.first, scene.footage.last);
+    let keys = Outlines::new(part, detail).within(scene.footage.first, scene.footage.last);
     let (Some((first, start)), Some((last, _))) = (keys.first(), keys.last()) else { return };
     let flag = if part.closed { RELATIVE_HANDLES } else { RELATIVE_HANDLES | OPEN };
     let _ = write!(out, "\n    {{curvegroup \"{name}\" 512 bezier\n     {{{{cc\n       {{f {flag}}}\n       {{p");
     let height = scene.footage.height as f64;
     for point in 0..start.len() {
         let channel =
-            |value: &dyn Fn(Point) -> f64| channel(keys.iter().map(|(frame, points)| (*frame, value(points[point]))));
+            |value: &dyn Fn(&Knot) -> f64| channel(keys.iter().map(|(frame, knots)| (*frame, value(&knots[point]))));
         let _ = write!(
             out,
-            "\n        {{0 0}}\n        {{{} {}}}\n        {{0 0}}",
-            channel(&|p| p.x),
-            channel(&|p| height - p.y)
+            "\n        {{{} {}}}\n        {{{} {}}}\n        {{{} {}}}",
+            channel(&|knot| knot.before.x),
+            channel(&|knot| -knot.before.y),
+            channel(&|knot| knot.at.x),
+            channel(&|knot| height - knot.at.y),
+            channel(&|knot| knot.after.x),
+            channel(&|knot| -knot.after.y),
         );
     }
-    let middle = start.iter().sum::<Point>() / start.len() as f64;
+    let middle = start.iter().map(|knot| knot.at).sum::<Point>() / start.len() as f64;
     let [r, g, b] = part.shown_colour(index).map(|c| number(c.into()));
     // Nuke's own value is 1.
     let rate = part.falloff.rate;
@@ -81,7 +86,7 @@ fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing:
 
 /// The opacity of a part that is not always there between its first and its last contour; empty otherwise. Nuke's own value is 1.
 /// A key on every frame makes steps, however Nuke interpolates.
-fn opacity(part: &Part, keys: &[(FrameNumber, Vec<Point>)], footage: &Footage) -> String {
+fn opacity(part: &Part, keys: &Keys, footage: &Footage) -> String {
     let (begin, end) = (keys[0].0, keys[keys.len() - 1].0);
     let changes = presence(part, keys, footage);
     if !changes.iter().any(|(at, there)| *at < end && !there && *at > begin) {
@@ -113,7 +118,8 @@ fn held(keys: &[(String, String)]) -> impl Iterator<Item = &(String, String)> {
 /// The bits of a 32-bit float in hexadecimal digits.
 fn number(value: f64) -> String {
     let bits = (value as f32).to_bits();
-    if bits == 0 { "0".to_owned() } else { format!("x{bits:x}") }
+    // −0 is 0.
+    if bits << 1 == 0 { "0".to_owned() } else { format!("x{bits:x}") }
 }
 
 /// A name as it may stand in quotes: characters that would end or escape it become underscores.

@@ -1,15 +1,59 @@
 //! A part's contour with the same number of points on every frame, as formats with animated shapes require it.
 //!
-//! Snapped paths are resampled by arc length. Each segment gets the number of points that its longest path requires.
-//! Without snapped paths the points are the control points.
+//! Snapped paths are resampled by arc length, and each segment gets the number of points that its longest path requires; or they
+//! become Bézier curves of few points (`bezier`). Without snapped paths the points are the control points, and the sides are straight.
 
+use super::bezier::Curves;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
+
+/// How contours follow snapped paths. A number is a spacing in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// By points this far apart, in pixels, with straight sides; at least 0.25.
+    Spacing(f64),
+    /// By Bézier curves within this many pixels of them, with as few points as that needs; at least 0.05.
+    Bezier(f64),
+}
+
+impl From<f64> for Detail {
+    fn from(spacing: f64) -> Self {
+        Self::Spacing(spacing)
+    }
+}
+
+/// A point of a contour, with handles relative to it. Handles of 0 make straight sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Knot {
+    /// The point, in pixels.
+    pub at: Point,
+    /// The handle before it.
+    pub before: Point,
+    /// The handle after it.
+    pub after: Point,
+}
+
+impl Knot {
+    /// A point without handles.
+    pub fn bare(at: Point) -> Self {
+        Self { at, before: Point::ZERO, after: Point::ZERO }
+    }
+
+    /// The places of the handles before and after the point.
+    pub fn handles(&self) -> [Point; 2] {
+        [self.at + self.before, self.at + self.after]
+    }
+}
+
+/// Contours with their frames.
+pub type Keys = Vec<(FrameNumber, Vec<Knot>)>;
 
 /// Greatest number of points of one segment.
 const MOST_POINTS: f64 = 2000.0;
 /// Least distance between points, in pixels.
 const LEAST_SPACING: f64 = 0.25;
+/// Least distance that Bézier curves may have from paths, in pixels.
+const LEAST_TOLERANCE: f64 = 0.05;
 
 /// The contours of one part.
 #[derive(Clone, Debug)]
@@ -17,38 +61,51 @@ pub struct Outlines<'a> {
     part: &'a Part,
     /// Number of control points on every frame.
     points: usize,
-    /// Number of points of each segment, its end left out; nothing where the part has no snapped paths.
-    counts: Vec<usize>,
+    followed: Followed,
+}
+
+/// What the contours of a part follow.
+#[derive(Clone, Debug)]
+enum Followed {
+    /// The control points.
+    Points,
+    /// Snapped paths, by points: the number of points of each segment, its end left out.
+    Paths(Vec<usize>),
+    /// Snapped paths, by Bézier curves.
+    Curves(Curves),
 }
 
 impl<'a> Outlines<'a> {
-    /// Prepares the contours of a part. Points of snapped paths are about `spacing` pixels apart.
-    pub fn new(part: &'a Part, spacing: f64) -> Self {
-        let spacing = spacing.max(LEAST_SPACING);
-        let mut counts = Vec::new();
-        for &frame in part.curves.keys() {
-            let Some(paths) = part.complete_curves(frame) else { continue };
-            counts.resize(paths.len(), 1);
-            for (count, path) in counts.iter_mut().zip(paths) {
-                let wanted = (polyline::length(path, false) / spacing).ceil().clamp(1.0, MOST_POINTS);
-                *count = (*count).max(wanted as usize);
-            }
-        }
+    /// Prepares the contours of a part.
+    pub fn new(part: &'a Part, detail: impl Into<Detail>) -> Self {
         let points = part.keys.values().chain(part.tracks.values()).next().map_or(0, Vec::len);
-        Self { part, points, counts }
+        let followed = match detail.into() {
+            Detail::Spacing(spacing) => paths(part, spacing.max(LEAST_SPACING)),
+            Detail::Bezier(tolerance) => {
+                let curves = Curves::new(part, tolerance.max(LEAST_TOLERANCE), |frame| control(part, points, frame));
+                curves.map_or(Followed::Points, Followed::Curves)
+            }
+        };
+        Self { part, points, followed }
+    }
+
+    /// Whether the sides are curves, on all frames alike.
+    pub fn bent(&self) -> bool {
+        matches!(self.followed, Followed::Curves(_))
     }
 
     /// The contour on a frame, in pixels; `None` if the part has no points there.
-    pub fn at(&self, frame: FrameNumber) -> Option<Vec<Point>> {
-        // A document may hold a frame with another number of points: it is no contour of this part.
-        let points = self.part.points_at(frame).filter(|points| !points.is_empty() && points.len() == self.points)?;
-        if self.counts.is_empty() {
-            return Some(points.clone());
-        }
+    pub fn at(&self, frame: FrameNumber) -> Option<Vec<Knot>> {
+        let points = control(self.part, self.points, frame)?;
+        let counts = match &self.followed {
+            Followed::Points => return Some(points.iter().copied().map(Knot::bare).collect()),
+            Followed::Curves(curves) => return Some(curves.at(frame, points, self.part.closed)),
+            Followed::Paths(counts) => counts,
+        };
         let n = points.len();
         let curves = self.part.complete_curves(frame);
         let mut line = Vec::new();
-        for (i, &count) in self.counts.iter().enumerate().take(n) {
+        for (i, &count) in counts.iter().enumerate().take(n) {
             let straight = [points[i], points[(i + 1) % n]];
             let segment = curves.and_then(|paths| paths.get(i)).map_or(&straight[..], Vec::as_slice);
             line.extend(&polyline::resample(segment, false, count + 1)[..count]);
@@ -56,18 +113,37 @@ impl<'a> Outlines<'a> {
         if !self.part.closed {
             line.extend(points.last());
         }
-        Some(line)
+        Some(line.into_iter().map(Knot::bare).collect())
     }
 
     /// The frames from `first` to `last` on which there is a contour, each with its contour.
-    pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Vec<(FrameNumber, Vec<Point>)> {
+    pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Keys {
         (first..=last).filter_map(|frame| Some((frame, self.at(frame)?))).collect()
     }
 }
 
+/// The control points of a part on a frame. A document may hold a frame with another number of points: it is no contour of this part.
+fn control(part: &Part, count: usize, frame: FrameNumber) -> Option<&Vec<Point>> {
+    part.points_at(frame).filter(|points| !points.is_empty() && points.len() == count)
+}
+
+/// Points of snapped paths about `spacing` pixels apart.
+fn paths(part: &Part, spacing: f64) -> Followed {
+    let mut counts = Vec::new();
+    for &frame in part.curves.keys() {
+        let Some(paths) = part.complete_curves(frame) else { continue };
+        counts.resize(paths.len(), 1);
+        for (count, path) in counts.iter_mut().zip(paths) {
+            let wanted = (polyline::length(path, false) / spacing).ceil().clamp(1.0, MOST_POINTS);
+            *count = (*count).max(wanted as usize);
+        }
+    }
+    if counts.is_empty() { Followed::Points } else { Followed::Paths(counts) }
+}
+
 /// Keys without those that say nothing in a format that goes evenly from one to the next: a contour that is the same as before and
 /// after is held.
-pub fn turning(keys: &[(FrameNumber, Vec<Point>)]) -> Vec<(FrameNumber, Vec<Point>)> {
+pub fn turning<T: Clone + PartialEq>(keys: &[(FrameNumber, T)]) -> Vec<(FrameNumber, T)> {
     let held = |k: usize| k > 0 && k + 1 < keys.len() && keys[k - 1].1 == keys[k].1 && keys[k].1 == keys[k + 1].1;
     keys.iter().enumerate().filter(|(k, _)| !held(*k)).map(|(_, key)| key.clone()).collect()
 }

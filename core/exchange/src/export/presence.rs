@@ -4,12 +4,11 @@
 //! said that the picture does not show it, and, once the part is tracked, wherever it has no contour. Other programs move
 //! shapes from key to key: a part that has nothing but keys is there between them.
 
-use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part};
 
 /// The frames on which a part comes or goes, each with whether it is there from then on. The first one is that of the
 /// footage. `keys` are its contours on frames of the footage. Only one frame if the part is always there; none without contours.
-pub fn presence(part: &Part, keys: &[(FrameNumber, Vec<Point>)], footage: &Footage) -> Vec<(FrameNumber, bool)> {
+pub fn presence<T>(part: &Part, keys: &[(FrameNumber, T)], footage: &Footage) -> Vec<(FrameNumber, bool)> {
     let (Some((begin, _)), Some((end, _))) = (keys.first(), keys.last()) else { return Vec::new() };
     let mut changes = Vec::new();
     if footage.first < *begin {
@@ -56,6 +55,7 @@ fn put(changes: &mut Vec<(FrameNumber, bool)>, frame: FrameNumber, there: bool) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::geometry::Point;
     use std::collections::BTreeMap;
 
     fn changes(tracked: bool, frames: &[FrameNumber], absent: &[[FrameNumber; 2]]) -> Vec<(FrameNumber, bool)> {

@@ -1,8 +1,8 @@
 //! Shapes for Silhouette (`.fxs`).
 //!
 //! The file is an XML document. One layer contains a Bézier shape for each part, nearest first. A shape has a key of
-//! its path on every frame on which the part has a contour, but for those on which it is held: paths go evenly from key to key. Where the part is not there, the opacity of its shape is 0. Both handles of a point are at the point, so the sides are
-//! straight like those of the part.
+//! its path on every frame on which the part has a contour, but for those on which it is held: paths go evenly from key to key. Where the part is not there, the opacity of its shape is 0. A point has three places: its own, that of the handle after
+//! it, and that of the handle before it. Where sides are straight, both handles are at the point.
 //!
 //! Coordinates are independent of the resolution: the origin is the middle of the picture, x points right, y down, and
 //! the unit is the height of the picture. Key frames are counted from the session's first frame, which the root element
@@ -12,7 +12,7 @@
 //! Silhouette reads that.
 
 use super::names::written;
-use super::outlines::{Outlines, turning};
+use super::outlines::{Detail, Outlines, turning};
 use super::presence::presence;
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
@@ -22,8 +22,9 @@ use std::fmt::Write;
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
 const DECIMALS: usize = 6;
 
-/// The scene's parts as a Silhouette document. Points of snapped paths are about `spacing` pixels apart.
-pub fn silhouette(scene: &Scene, spacing: f64) -> String {
+/// The scene's parts as a Silhouette document. `detail` says how they follow snapped paths.
+pub fn silhouette(scene: &Scene, detail: impl Into<Detail>) -> String {
+    let detail = detail.into();
     let footage = &scene.footage;
     let mut out = String::from("<!-- Silhouette Shape File -->\n");
     let _ = writeln!(
@@ -38,14 +39,14 @@ pub fn silhouette(scene: &Scene, spacing: f64) -> String {
     out += "   <Property id=\"objects\" constant=\"True\" expanded=\"True\">\n";
     let names = written(scene, plain);
     for index in super::nearest_first(scene) {
-        shape(&mut out, scene, (index, &names[index]), spacing);
+        shape(&mut out, scene, (index, &names[index]), detail);
     }
     out + "   </Property>\n  </Properties>\n </Layer>\n</Silhouette>\n"
 }
 
-fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing: f64) {
+fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), detail: Detail) {
     let part = &scene.parts[index];
-    let keys = Outlines::new(part, spacing).within(scene.footage.first, scene.footage.last);
+    let keys = Outlines::new(part, detail).within(scene.footage.first, scene.footage.last);
     if keys.is_empty() {
         return;
     }
@@ -66,13 +67,14 @@ fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), spacing:
     }
     *out += "      <Property id=\"path\">\n";
     let closed = if part.closed { "True" } else { "False" };
-    for (frame, points) in turning(&keys) {
+    for (frame, knots) in turning(&keys) {
         let frame = i64::from(frame) - i64::from(scene.footage.first);
         let _ =
             writeln!(out, "       <Key frame=\"{frame}\" interp=\"linear\"><Path closed=\"{closed}\" type=\"Bezier\">");
-        for p in points {
-            let at = placed(p, scene);
-            let _ = writeln!(out, "        <Point>{at},{at},{at}</Point>");
+        for knot in knots {
+            let [before, after] = knot.handles();
+            let [at, after, before] = [knot.at, after, before].map(|p| placed(p, scene));
+            let _ = writeln!(out, "        <Point>{at},{after},{before}</Point>");
         }
         *out += "       </Path></Key>\n";
     }

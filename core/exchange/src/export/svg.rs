@@ -2,12 +2,12 @@
 //!
 //! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage. The animation loops, and
 //! browsers play it directly. SMIL can interpolate only paths with the same number of points, so every frame gets the
-//! same number ([`super::outlines`]). A part is hidden on frames without a contour; one that
+//! same number ([`super::outlines`]), and curves on all frames or on none. A part is hidden on frames without a contour; one that
 //! has nothing but keys says so in an attribute, since an import would take it for absent between them. The root says which frames of the document it shows. Parts are drawn in the order of
 //! depth, far ones first.
 
 use super::names::written;
-use super::outlines::Outlines;
+use super::outlines::{Detail, Knot, Outlines};
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::resample;
@@ -43,11 +43,19 @@ pub struct SvgOptions {
     pub motion: Motion,
     /// Distance between points of snapped paths, in pixels; at least 0.25.
     pub spacing: f64,
+    /// If parts follow snapped paths by Bézier curves instead: how far these may be from the paths, in pixels.
+    pub bezier: Option<f64>,
+}
+
+impl SvgOptions {
+    fn detail(&self) -> Detail {
+        self.bezier.map_or(Detail::Spacing(self.spacing), Detail::Bezier)
+    }
 }
 
 impl Default for SvgOptions {
     fn default() -> Self {
-        Self { motion: Motion::Hold, spacing: 2.0 }
+        Self { motion: Motion::Hold, spacing: 2.0, bezier: None }
     }
 }
 
@@ -131,8 +139,14 @@ pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], o
 
 fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: &SvgOptions) {
     let part = &scene.parts[index];
-    let outlines = Outlines::new(part, options.spacing);
-    let shape = |frame: FrameNumber| Some(data(&outlines.at(frame)?, part.closed));
+    let outlines = Outlines::new(part, options.detail());
+    let shape = |frame: FrameNumber| {
+        let knots = outlines.at(frame)?;
+        if outlines.bent() {
+            return Some(bent(&knots, part.closed));
+        }
+        Some(data(&knots.iter().map(|knot| knot.at).collect::<Vec<_>>(), part.closed))
+    };
     let colour = palette::hex(part.shown_colour(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
     let keys = if part.tracks.is_empty() && part.keys.len() > 1 { format!(" {KEYS_ONLY}") } else { String::new() };
@@ -289,6 +303,26 @@ fn data(line: &[Point], closed: bool) -> String {
             _ => " ",
         };
         write_point(&mut text, p);
+    }
+    if closed {
+        text += "Z";
+    }
+    text
+}
+
+/// The path of a contour of Bézier curves. Straight sides are curves too: animations need the same commands on all frames.
+fn bent(knots: &[Knot], closed: bool) -> String {
+    let mut text = String::from("M");
+    let Some(first) = knots.first() else { return String::new() };
+    write_point(&mut text, first.at);
+    let nexts = knots.iter().skip(1).chain(closed.then_some(first));
+    for (k, (knot, next)) in knots.iter().zip(nexts).enumerate() {
+        text += if k == 0 { "C" } else { " " };
+        write_point(&mut text, knot.handles()[1]);
+        for p in [next.handles()[0], next.at] {
+            text += " ";
+            write_point(&mut text, p);
+        }
     }
     if closed {
         text += "Z";

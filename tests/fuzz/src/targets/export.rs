@@ -19,7 +19,7 @@ pub fn export(data: &[u8]) {
     }
     let spacing = if u.ratio(1u8, 4).unwrap_or(false) { number(&mut u).unwrap_or(2.0) } else { 2.0 };
     for (motion, _) in Motion::ALL {
-        let Ok(svg) = export_svg(&document, &SvgOptions { motion, spacing }) else { return };
+        let Ok(svg) = export_svg(&document, &SvgOptions { motion, spacing, ..SvgOptions::default() }) else { return };
         let found = import::svg::svg(&svg, footage, footage.first);
         taken(found, "SVG");
     }
