@@ -21,7 +21,11 @@ class Property {
     setValuesAtTimes(times, values) {
         check(times.length === values.length && times.length > 0, "as many times as values");
         check(times.every((time, k) => typeof time === "number" && (k === 0 || times[k - 1] < time)), "times rise");
-        const right = (value) => this.kind === "shape" ? value instanceof Shape && value.vertices.length > 1 : typeof value === "number";
+        const pairs = (list) => list.every((pair) => pair.length === 2 && pair.every(Number.isFinite));
+        const tangents = ({vertices, inTangents, outTangents}) => [inTangents, outTangents].every(
+            (list) => list === undefined || (list.length === vertices.length && pairs(list)));
+        const shape = (value) => value instanceof Shape && value.vertices.length > 1 && pairs(value.vertices) && tangents(value);
+        const right = (value) => this.kind === "shape" ? shape(value) : typeof value === "number";
         check(values.every(right), "values of the kind " + this.kind);
         this.keys = times.map((time, k) => [time, values[k]]);
     }
@@ -83,17 +87,22 @@ def points(frame):
 @pytest.fixture
 def run(tmp_path: Path):
     """Exports two parts and runs the script. The argument is the selected layer."""
-    node = Path(ROOT_DIR) / "bin" / "node"
     keys = {str(frame): points(frame) for frame in [12, 13, 15]}
     still = {"10": [[1.0, 40.0], [30.5, 44.0]], "18": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
         {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff_curve": "linear", "color": [0.25, 1, 0.5]},
         {"name": 'near "line"', "closed": False, "depth": 2, "keys": still},
     ]
+    return ready(tmp_path, parts)
+
+
+def ready(tmp_path: Path, parts: list, *options: str):
+    """What runs the script of parts."""
+    node = Path(ROOT_DIR) / "bin" / "node"
     document = tmp_path / "a.json"
     document.write_text(json.dumps({"rototoon": 1, "footage": FOOTAGE, "parts": parts}))
     script, stand_in = tmp_path / "a.jsx", tmp_path / "stand_in.js"
-    subprocess.run([program(), "export", document, "-o", script], check=True, timeout=60)
+    subprocess.run([program(), "export", document, "-o", script, *options], check=True, timeout=60)
     stand_in.write_text(STAND_IN)
 
     def with_layer(selected):
@@ -123,6 +132,23 @@ def test_the_script_makes_a_mask_for_each_part_on_the_selected_layer(run):
     assert keys_of(far["opacity"]) == [(25, 0), (27, 100), (29, 0), (30, 100), (31, 0)]
     assert far["opacity"]["held"] == 5
     assert keys_of(near["opacity"])[:2] == [(25, 100), (26, 0)]
+
+
+def test_the_tangents_of_bezier_curves_are_relative_to_their_vertices(tmp_path: Path):
+    """A snapped path that is a drawn cubic from (10, 10) to (40, 10)."""
+    ends, shares = [[10.0, 10.0], [40.0, 10.0], [25.0, 40.0]], [k / 60 for k in range(61)]
+    bow = [[10 + 30 * t, 10 - 24 * t * (1 - t)] for t in shares]
+    curves = {"12": [bow, [ends[1], ends[2]], [ends[2], ends[0]]]}
+    part = {"name": "a", "closed": True, "keys": {"12": ends}, "tracks": {"12": ends}, "curves": curves}
+    said, [layer] = ready(tmp_path, [part], "--bezier", "0.25")(None)
+    assert said == []
+    [(_, shape)] = keys_of(layer["masks"][0]["path"])
+    assert shape["vertices"] == ends
+    assert shape["inTangents"][0] == [0, 0] and shape["inTangents"][2] == [0, 0]
+    assert shape["outTangents"][1:] == [[0, 0], [0, 0]]
+    # Those of the drawn cubic are a third of the way across, and 8 pixels up.
+    assert shape["outTangents"][0] == pytest.approx([10, -8], abs=1.5)
+    assert shape["inTangents"][1] == pytest.approx([-10, -8], abs=1.5)
 
 
 def test_without_a_selected_layer_there_is_a_solid(run):

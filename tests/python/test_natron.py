@@ -49,6 +49,8 @@ class Curve:
     def __init__(self, x, y, time):
         assert isinstance(time, int)
         self.points, self.feather = [{time: (x, y)}], [{time: (x, y)}]
+        # The handles before and after each point, and those of the feather.
+        self.handles, self.feather_handles = [{}], [{}]
         self.label, self.closed = None, False
         self.feather_distance, self.falloff = Parameter(), Parameter()
         self.activated, self.life, self.colour = Parameter(), Choice(), None
@@ -58,16 +60,16 @@ class Curve:
         self.label = label
 
     def addControlPoint(self, x, y):
-        self.points.append({})
-        self.feather.append({})
+        for each in (self.points, self.feather, self.handles, self.feather_handles):
+            each.append({})
 
     def setPointAtIndex(self, index, time, x, y, left_x, left_y, right_x, right_y):
-        assert (x, y) == (left_x, left_y) == (right_x, right_y)
         self.points[index][time] = (x, y)
+        self.handles[index][time] = (left_x, left_y), (right_x, right_y)
 
     def setFeatherPointAtIndex(self, index, time, x, y, left_x, left_y, right_x, right_y):
-        assert (x, y) == (left_x, left_y) == (right_x, right_y)
         self.feather[index][time] = (x, y)
+        self.feather_handles[index][time] = (left_x, left_y), (right_x, right_y)
 
     def setCurveFinished(self, finished):
         self.closed = finished
@@ -134,9 +136,9 @@ def document(tmp_path_factory) -> Path:
     return document
 
 
-def export(document: Path, ending: str) -> Path:
+def export(document: Path, ending: str, *options: str) -> Path:
     out = document.with_suffix(ending)
-    subprocess.run([program(), "export", document, "-o", out], check=True, timeout=60)
+    subprocess.run([program(), "export", document, "-o", out, *options], check=True, timeout=60)
     return out
 
 
@@ -151,6 +153,8 @@ def test_the_script_makes_the_parts(document: Path, name: str):
     assert (far.label, far.closed, near.label, near.closed) == ("Größe 🦊", True, 'near "line"', False)
     for curve in app.items:
         assert curve.points == curve.feather and curve.feather_distance.value == 0
+        assert curve.handles == curve.feather_handles
+        assert curve.handles == [{f: (p, p) for f, p in keyed.items()} for keyed in curve.points]
     assert (far.falloff.value, near.falloff.value) == (3.5, 1)
     assert far.colour == (0.25, 1, 0.5) and len(near.colour) == 3 and near.colour != far.colour
     for k, keyed in enumerate(far.points):
@@ -158,6 +162,29 @@ def test_the_script_makes_the_parts(document: Path, name: str):
     assert far.activated.keys == {0: False, 2: True, 4: False, 5: True, 7: False}
     assert [Choice.OPTIONS[curve.life.value] for curve in app.items] == ["Custom", "All"]
     assert near.activated.keys == {} and set(near.points[0]) == {0, 8}
+
+
+def test_the_script_sets_the_handles_of_bezier_curves(tmp_path: Path):
+    """A snapped path that is a drawn cubic from (10, 10) to (40, 10)."""
+    ends, shares = [[10.0, 10.0], [40.0, 10.0], [25.0, 40.0]], [k / 60 for k in range(61)]
+    bow = [[10 + 30 * t, 10 - 24 * t * (1 - t)] for t in shares]
+    curves = {"0": [bow, [ends[1], ends[2]], [ends[2], ends[0]]]}
+    part = {"name": "a", "closed": True, "keys": {"0": ends}, "tracks": {"0": ends}, "curves": curves}
+    footage = {"pattern": "f_%d.png", "first": 0, "last": 0, "fps": 12.5, "width": 64, "height": HEIGHT}
+    document = tmp_path / "a.json"
+    document.write_text(json.dumps({"rototoon": 1, "footage": footage, "parts": [part]}))
+    script = export(document, ".py", "--bezier", "0.25")
+
+    app = Natron()
+    exec(compile(script.read_text(encoding="ascii"), "a.py", "exec"), {"app": app})  # noqa: S102: the script is ours
+    [curve] = app.items
+    places = [keyed[0] for keyed in curve.points]
+    assert places == [(x, HEIGHT - y) for x, y in ends] and curve.handles == curve.feather_handles
+    first, second, third = (keyed[0] for keyed in curve.handles)
+    assert first[0] == places[0] and second[1] == places[1] and third == (places[2], places[2])
+    # Those of the drawn cubic are a third of the way across, and 8 pixels up.
+    assert first[1] == pytest.approx((20, HEIGHT - 2), abs=1.5)
+    assert second[0] == pytest.approx((30, HEIGHT - 2), abs=1.5)
 
 
 @pytest.fixture(scope="module")

@@ -336,6 +336,7 @@ fn options_that_would_change_nothing_are_refused() {
         ("render", "a.exr", &["--what", "matte", "--points", "off"]),
         ("export", "a.nk", &["--motion", "linear"]),
         ("export", "a.json", &["--spacing", "3"]),
+        ("export", "a.json", &["--bezier", "0.5"]),
     ] {
         let to = folder.path(name);
         let frames: &[&str] = if command == "render" { &["--frames", "3"] } else { &[] };
@@ -344,6 +345,9 @@ fn options_that_would_change_nothing_are_refused() {
         let told = format!("found {option} {value}: expected no such option ");
         assert!(said.contains(&told) && !to.exists(), "{said}");
     }
+    let both = ["--bezier", "0.5", "--spacing", "3"];
+    let said = run(&[&["export", text(&captured), "-o", text(&folder.path("a.nk"))], &both[..]].concat(), 2);
+    assert!(said.contains("--bezier") && said.contains("--spacing"), "{said}");
     // Their usual values say nothing.
     run(&["export", text(&captured), "-o", text(&folder.path("a.nk")), "--motion", "hold"], 0);
 }
