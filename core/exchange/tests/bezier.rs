@@ -140,7 +140,7 @@ fn a_shape_has_the_same_few_points_on_all_frames() {
         values.split(';').map(|d| (d.matches('C').count(), d.split([' ', 'C']).count())).collect();
     assert!(counts.iter().all(|count| *count == counts[0] && count.0 == 1), "{counts:?}");
     let points = numbers(values, "C", "Z").len() / 6;
-    assert!(points >= 4 && points <= 8, "{points} curves: {values}");
+    assert!((4..=8).contains(&points), "{points} curves: {values}");
     let polygons = export::svg(&scene, &SvgOptions::default());
     let values = polygons.split(" values=\"").nth(1).unwrap().split('"').next().unwrap();
     assert!(!values.contains('C') && values.contains('L'), "without the option sides are straight");

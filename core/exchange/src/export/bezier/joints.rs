@@ -156,9 +156,8 @@ mod tests {
     #[test]
     fn a_smooth_point_that_is_a_corner_on_one_frame_has_one_handle_there() {
         let before = line(&[(0.0, 0.0), (10.0, 0.0)]);
-        let bent = |up: f64| {
-            (0..=20).map(|k| f64::from(k)).map(|t| Point::new(10.0 + 0.6 * t, up * t * t)).collect::<Vec<_>>()
-        };
+        let bent =
+            |up: f64| (0..=20).map(f64::from).map(|t| Point::new(10.0 + 0.6 * t, up * t * t)).collect::<Vec<_>>();
         let after = bent(0.02);
         assert_eq!(Joint::new(&before, &after).ends(true, 0.25), [End::Along(-Point::X), End::Along(Point::X)]);
         assert_eq!(Joint::new(&before, &after).ends(false, 0.25), [End::Free; 2]);
