@@ -3,7 +3,8 @@
 Pegs have the hierarchy of the groups. A peg's movement from key to key is the similarity that fits the matched strokes of its own
 layers best. A group without layers of its own moves with its parent. If each layer is a peg, the layer with the longest strokes
 leads its group: if the group followed the mean of its layers, no layer would move as it is drawn. A peg's pivot is its joint, the
-point that moves least relative to the parent. Strokes change their shape in the peg's frame.
+point that moves least relative to the parent. A peg without a parent turns about that point if the drawing shows it, as the shoulder of an
+arm. Strokes change their shape in the peg's frame.
 """
 
 from __future__ import annotations
@@ -25,6 +26,9 @@ SCALES = (0.05, 20.0)
 """Least and greatest scale from one key to the next."""
 FAR = 4.0
 """Largest distance of a group's pivot from its middle, in sizes of the group."""
+NEAR, END, LONG = 0.35, 0.7, 0.35
+"""A pivot is a joint at this distance of the strokes at most, and from their middle at least, in root mean square distances of the strokes from
+their middle, where the logarithm of the ratio of their length and width is at least this."""
 STIFF = 1e-4
 """Weight that pulls a pivot to the middle if nothing turns."""
 
@@ -109,11 +113,12 @@ def pegs(sheet: Sheet, laid: Laid, span: int, offsets, rows, values) -> list[Peg
             steps[key] = step or above[key + 1].after(above[key].inverse())
         world = worlds[path] = _chained(steps, span, around)
         local = {key: above[key].inverse().after(world[key]) for key in around}
-        middle, size = _middle(sheet, laid, span, inner)
+        drawn = _drawn(sheet, laid, span, inner)
+        middle = complex(drawn.mean()) if len(drawn) else 0j
         pivot = _pivot(local[span + 1], middle)
-        if abs(pivot - middle) > FAR * size:
+        if abs(pivot - middle) > FAR * float(np.abs(drawn - middle).max(initial=0.0)):
             pivot = middle
-        if len(path) == 1:
+        if len(path) == 1 and not _is_joint(pivot, drawn):
             # A drawing seldom shows the pivot of a peg without a parent. So go only part of the way, as with pegs that are found.
             pivot = middle + sheet.choices[span].arcs * (pivot - middle)
         poses = {key: (each.turn, abs(each.factor), each.factor * pivot + each.shift - pivot) for key, each in local.items()}
@@ -195,16 +200,27 @@ def _chained(steps: dict[int, Similarity], span: int, around: range) -> dict[int
     return world
 
 
-def _middle(sheet: Sheet, laid: Laid, key: int, layers: list[int]) -> tuple[complex, float]:
-    """Middle and size of the drawing of some layers on a key."""
+def _drawn(sheet: Sheet, laid: Laid, key: int, layers: list[int]) -> np.ndarray:
+    """The points of some layers on a key, as complex numbers."""
     offsets = np.asarray(laid.drawings.strokes.offsets)
     points = np.asarray(laid.drawings.strokes.points).reshape(-1, 2) @ [1, 1j]
     found = [np.zeros(0, complex)]
     for layer in layers:
         first = laid.first_stroke[key, layer]
         found.append(points[offsets[first] : offsets[first + len(sheet.contents[key][layer].sizes)]])
-    every = np.concatenate(found)
-    return (complex(every.mean()), float(np.abs(every - every.mean()).max())) if len(every) else (0j, 0.0)
+    return np.concatenate(found)
+
+
+def _is_joint(pivot: complex, drawn: np.ndarray) -> bool:
+    """Whether a pivot is on the drawing, at the end of something long: a shoulder, or feet. The library does the same for pegs that it finds."""
+    if not len(drawn):
+        return False
+    from_middle = drawn - drawn.mean()
+    size = math.sqrt(float((np.abs(from_middle) ** 2).mean()))
+    # The squares of length and width are size² (1 ± long) / 2.
+    long = abs(complex((from_middle**2).mean())) / size**2 if size > 0 else 0.0
+    ends = abs(pivot - complex(drawn.mean())) >= END * size
+    return long >= math.tanh(LONG) and ends and float(np.abs(drawn - pivot).min()) <= NEAR * size
 
 
 def _pivot(local: Similarity, middle: complex) -> complex:

@@ -162,3 +162,17 @@ def test_a_spacing_curve(addon):
         with pytest.raises(RuntimeError, match=said):
             bpy.ops.rototoon.in_between(spacing="CURVE", curve=text)
     assert set(frames(addon, ob)) == set(range(1, 10))
+
+
+def test_an_arm_on_its_own_layer_turns_about_its_shoulder_without_arcs(addon):
+    arm = [np.stack([np.linspace(4.0, 9.0, 20), np.full(20, 3.0 + side)], 1) for side in (-0.3, 0.3)]
+    ob = drawing_object(addon, ("Body", "Arm"))
+    for frame, angle in ((1, -0.4), (9, 1.6)):
+        add(addon, ob, "Body", frame, BODY)
+        add(addon, ob, "Arm", frame, [turned(stroke, SHOULDER, angle) for stroke in arm])
+    bpy.context.scene.frame_set(1)
+    for arcs in (0.0, 0.5, 1.0):
+        assert bpy.ops.rototoon.in_between(pegs="LAYERS", spacing="LINEAR", arcs=arcs) == {"FINISHED"}
+        for frame in (3, 5, 7):
+            wanted = [turned(stroke, SHOULDER, -0.4 + (frame - 1) / 4) for stroke in arm]
+            assert away(points(addon, ob, frame, "Arm"), wanted) < 0.02, (arcs, frame)
