@@ -1,4 +1,4 @@
 """Strokes: tools for any drawing. `fitting` is Fit Strokes, `hidden` is Remove Hidden Lines.
 
-May import: `rototoon`, `blender`, `common`.
+May import: `rototoon`, `blender`, `common`, `tween`: what Rototoon changes in an in-between is no change of the artist.
 """

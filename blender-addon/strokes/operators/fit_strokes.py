@@ -4,12 +4,13 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, marks, projection, selection
+from ...blender import guard, projection, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted
+from ...common.wording import counted, joined
+from ...tween import rototoon_changes
 from .. import fitting
 
 
@@ -112,7 +113,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
-        with marks.kept(self._ob):
+        with rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
         self._ob.data.update_tag()
@@ -121,7 +122,9 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             return "No stroke became lighter"
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
-        return f"{counted(strokes, 'stroke')} fitted: {before} points became {after}" + (f", {skipped} not changed" if skipped else "")
+        lighter = {layer: {number for name, number, fitted in self._done if name == layer and fitted.fitted} for layer in made.frames}
+        said = f"{counted(strokes, 'stroke')} fitted: {before} points became {after}"
+        return joined(said, f"{skipped} not changed" if skipped else "", made.said(lighter))
 
 
 CLASSES = (ROTOTOON_OT_fit_strokes,)

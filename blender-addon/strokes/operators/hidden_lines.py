@@ -3,13 +3,14 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, marks
+from ...blender import guard
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted
+from ...common.wording import counted, joined
+from ...tween import rototoon_changes
 from .. import hidden
 
 
@@ -87,10 +88,13 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
-        with marks.kept(self._ob):
+        with rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
-        return f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}" if drawings else "Nothing is hidden"
+        if not drawings:
+            return "Nothing is hidden"
+        cut = {layer: {each.source for each in self._cuts if each.changed and each.layer == layer} for layer in made.frames}
+        return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", made.said(cut))
 
 
 CLASSES = (ROTOTOON_OT_hidden_lines,)
