@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 
 
 def counted(number: int, noun: str) -> str:
@@ -20,6 +20,11 @@ def listed(frames: list[int]) -> str:
             spans.append([frame, frame])
     texts = [str(a) if a == b else f"{a} {'and' if b == a + 1 else 'to'} {b}" for a, b in spans]
     return texts[0] if len(texts) == 1 else ", ".join(texts[:-1]) + f" and {texts[-1]}"
+
+
+def are(things: Sized) -> str:
+    """The verb for one thing, or for several."""
+    return "is" if len(things) == 1 else "are"
 
 
 def stayed(noun: str, frames: Iterable[int]) -> str:

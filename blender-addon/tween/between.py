@@ -42,6 +42,8 @@ class Block:
     shares: np.ndarray
     positions: np.ndarray
     """(F, N, 3)."""
+    exchanged: tuple[int, int] = (0, 0)
+    """Number of strokes of the earlier and of the later key that are exchanged half way."""
     ends: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
     """By attribute: first and last values, which are blended over the frames."""
     changing: dict[str, np.ndarray] = field(default_factory=dict)
@@ -183,6 +185,7 @@ class _Span:
         block = Block(
             sheet.layers[layer], first, last, frames, content, alike, stands, parts, shares, positions
         )
+        block.exchanged = _exchanged(stands, self.opacities[:, mask])
         _carry(block, sides, (strokes[:, 2] & tween.CLOSED) != 0)
         _fade(block, self.opacities[:, mask], sides)
         if (content.types == st.BEZIER).any():
@@ -231,6 +234,13 @@ def _fills(before: _Side, after: _Side) -> np.ndarray:
     for k in np.flatnonzero(~before.there & (fills != 0)):
         fills[k] = known.setdefault(int(fills[k]), most + int(fills[k]))
     return fills
+
+
+def _exchanged(stands: np.ndarray, opacities: np.ndarray) -> tuple[int, int]:
+    """The number of strokes of either key that show on its half of the span only, so that others take their place. What vanishes or appears
+    shrinks, leaves the picture or fades, and is never gone from one frame to the next."""
+    gone = np.isin(opacities, (0.0, 1.0)).all(0) & (opacities == 0).any(0)
+    return int((gone & (stands[:, 1] < 0)).sum()), int((gone & (stands[:, 0] < 0)).sum())
 
 
 def _fade(block: Block, opacities: np.ndarray, sides) -> None:

@@ -50,12 +50,13 @@ def _has_tweened(handle) -> bool:
 def frames_of(layer, record: records.Layer) -> Frames:
     """Sorts the frames of a layer into keys and in-betweens."""
     found, slots = Frames([], []), marks.Slots(layer.id_data)
+    drawn = {number for span in record.spans.values() for number in span.sums}
     with gp.copied(layer.id_data) as data:
         for number, (handle, kind) in gp.drawings(gp.find_layer_of(data, layer.name)).items():
             if not is_tweened(handle, kind):
                 found.keys.append(number)
-                if kind == gp.GENERATED and _has_tweened(handle):
-                    # The artist has drawn on it.
+                if kind == gp.GENERATED and (number in drawn or _has_tweened(handle)):
+                    # The artist has drawn on it, in its place, or has emptied it.
                     found.edited.append(number)
             elif _is_edited(st.read(handle), number, record, slots):
                 found.keys.append(number)
@@ -65,7 +66,7 @@ def frames_of(layer, record: records.Layer) -> Frames:
                 continue
             if len(gp.offsets(handle)) < 2:
                 found.blank.add(number)
-                if kind == gp.GENERATED:
+                if kind == gp.GENERATED and number not in drawn:
                     found.ends.add(number)
     found.keys.sort()
     found.made.sort()

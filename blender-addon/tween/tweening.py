@@ -15,6 +15,7 @@ from rototoon import tween
 from ..blender import grease_pencil as gp
 from ..blender import guard, hierarchy
 from ..blender.errors import Problem
+from ..common.wording import are, listed
 from . import between, captured, layer_pegs, records, sheets, surroundings
 from . import keys as ks
 from . import numbers as tween_numbers
@@ -46,6 +47,8 @@ class Plan:
     """Number of spans that are up to date."""
     blank: int = 0
     """Number of chosen spans with a blank key."""
+    blank_frames: set[int] = field(default_factory=set)
+    """The blank keys at which they end."""
     again: bool = False
     """Whether spans that are up to date are drawn too."""
     stepped: set[tuple[int, int, int]] = field(default_factory=set)
@@ -110,6 +113,7 @@ def _plan_group(
         _add_calls(ob, sheet, result)
     blank = found.blank - found.ends
     result.blank += sum(span[0] in blank or span[1] in blank for span in wanted)
+    result.blank_frames |= {frame for span in wanted for frame in span if frame in blank}
 
 
 def _runs(found: ks.Frames) -> list[list[int]]:
@@ -183,8 +187,12 @@ class Done:
     drawings: int = 0
     keys: int = 0
     """Number of in-betweens that became keys."""
+    key_frames: set[int] = field(default_factory=set)
+    """Their frames."""
     held: set[tuple[int, int]] = field(default_factory=set)
     """Keys between which the earlier one is held, because no movement between the two can be believed."""
+    exchanged: dict[tuple[int, int], int] = field(default_factory=dict)
+    """The number of strokes that give way to others half way between two keys."""
 
 
 def finish(ob, plan: Plan) -> Done:
@@ -194,6 +202,7 @@ def finish(ob, plan: Plan) -> Done:
     done = Done()
     for name, found in plan.frames.items():
         done.keys += len(found.edited)
+        done.key_frames |= set(found.edited)
         adopt(gp.find_layer(ob, name), found.edited)
     pairs: dict[str, dict[int, list[tuple[int, int]]]] = {}
     for call in plan.calls:
@@ -203,11 +212,17 @@ def finish(ob, plan: Plan) -> Done:
         done.spans += len(call.spans)
         held = [k for k, held in zip(call.spans, call.drawn.held) if held]
         done.held |= {(call.sheet.frames[k], call.sheet.frames[k + 1]) for k in held}
+        exchanged: dict[tuple[int, int], np.ndarray] = {}
         for block in between.blocks(call.sheet, call.laid, call.spans, call.drawn):
+            keys = block.first, block.last
+            exchanged[keys] = exchanged.get(keys, np.zeros(2, int)) + block.exchanged
             span = call.sheet.frames.index(block.first)
             sums = between.write(ob, block, _tracks(block, numbers[block.layer]))
             done.drawings += len(sums)
             _note(plan.records[block.layer], block, call.sheet, span, sums)
+        for keys, counts in exchanged.items():
+            if counts.any():
+                done.exchanged[keys] = done.exchanged.get(keys, 0) + int(counts.max())
     records.write(ob.data, plan.records)
     ob.data.update_tag()
     return done
@@ -333,7 +348,8 @@ def _forget(record: records.Layer, keys: list[int], cleared: tuple[float, float]
 def nothing_to_draw(result: Plan) -> Problem:
     """The error for a plan without spans."""
     if result.blank:
-        return Problem("The drawing at one end is blank, so there is nothing to draw between")
+        frames = sorted(result.blank_frames)
+        return Problem(f"The drawing{'' if len(frames) == 1 else 's'} on {listed(frames)} {are(frames)} blank, so there is nothing to draw between")
     if result.stepped:
         first, last, step = max(result.stepped, key=lambda span: (span[1] - span[0], -span[0]))
         return Problem(

@@ -119,7 +119,7 @@ def test_spans_with_a_blank_key_are_a_warning(addon, opened, scripting):  # noqa
     scripting.take_reports()
     bpy.ops.rototoon.in_between(frames="ALL")
     (report,) = scripting.take_reports()
-    assert report.kind == "WARNING" and report.warnings == ("2 spans with a blank key were left out",)
+    assert report.kind == "WARNING" and report.warnings == ("2 spans with a blank key were left out: frame 5 is blank",)
 
 
 def test_live_does_nothing_in_background(addon, fake, tmp_path):

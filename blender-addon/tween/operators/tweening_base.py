@@ -7,7 +7,7 @@ from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted, listed
+from ...common.wording import are, counted, listed
 from .. import keys as ks
 from .. import tweening
 from ..charts import Choices
@@ -85,7 +85,8 @@ class Tweening(OnKeys, Long):
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=getattr(self, "layers", "ALL") == "ACTIVE")))
         self._plan = tweening.plan(self._ob, self.chosen_layers(context), self.choose)
         stale = _without_keys(self._plan)
-        if not self._plan.calls and not self._plan.current:
+        kept = any(found.edited for found in self._plan.frames.values())
+        if not self._plan.calls and not self._plan.current and not kept:
             problem = tweening.nothing_to_draw(self._plan)
             raise Problem(f"{problem}; {stale}") if stale else problem
         self.warn(stale)
@@ -94,18 +95,31 @@ class Tweening(OnKeys, Long):
 
     def finish(self, context, work) -> str:
         done = tweening.finish(self._ob, self._plan)
-        said = f"{counted(done.drawings, 'in-between')} in {counted(done.spans, 'span')}" if done.spans else "Nothing had changed"
+        said = f"{counted(done.drawings, 'in-between')} in {counted(done.spans, 'span')}" if done.spans else ""
+        if not done.spans:
+            said = "No in-between was drawn" if done.keys else "Nothing had changed"
         if done.spans and self._plan.current:
             said += f", {counted(self._plan.current, 'span')} up to date"
         if done.keys:
-            said += f", {counted(done.keys, 'drawing')} that you had changed {'is a key' if done.keys == 1 else 'are keys'} now"
+            frames = sorted(done.key_frames)
+            on = f"frame{'' if len(frames) == 1 else 's'} {listed(frames)}"
+            said += f", {counted(done.keys, 'drawing')} that you had changed {'is a key' if done.keys == 1 else 'are keys'} now: {on}"
         if self._plan.blank:
-            left_out = counted(self._plan.blank, "span")
-            self.warn(f"{left_out} with a blank key {'was' if self._plan.blank == 1 else 'were'} left out")
+            left_out, frames = counted(self._plan.blank, "span"), sorted(self._plan.blank_frames)
+            self.warn(
+                f"{left_out} with a blank key {'was' if self._plan.blank == 1 else 'were'} left out: "
+                f"frame{'' if len(frames) == 1 else 's'} {listed(frames)} {are(frames)} blank"
+            )
         if done.held:
             spans = ", ".join(f"{first} to {last}" for first, last in sorted(done.held))
             self.warn(
                 f"frames {spans}: no movement between the two drawings can be believed, so the earlier one is held; press Match Strokes, "
                 "or draw a breakdown"
+            )
+        if done.exchanged:
+            spans = ", ".join(f"{first} to {last} ({counted(count, 'stroke')})" for (first, last), count in sorted(done.exchanged.items()))
+            self.warn(
+                f"frames {spans}: strokes of one drawing give way to those of the other half way, because it is not sure which belong together; "
+                "press Match Strokes, or draw a breakdown"
             )
         return said
