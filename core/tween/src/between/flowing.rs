@@ -21,8 +21,9 @@ use super::super::stroke::Stroke;
 use super::correspond::Places;
 use super::credible::{self, Half, Lines, Passing};
 use super::join::{Asked, Ends, Run, runs};
-use super::{GivenPegs, Key, Sequence};
+use super::{GivenPegs, Key, Options, Sequence, Spacing};
 use crate::ink;
+use crate::peg::Timing;
 use rototoon_base::geometry::{Point, polygon, polyline};
 
 /// The share of the ink that must meet, by the flow by which most ink meets. Where less meets, the drawings are taken to have nothing
@@ -192,7 +193,7 @@ impl Sequence {
             let (first, second) = (&self.keys[k].strokes, &self.keys[k + 1].strokes);
             let doubted = given[k].sureness(first, second) < credible::SURE && !is_whole(&given[k], first, second);
             if doubted && !beyond_doubt(&given[k], first, second) {
-                ways[k] = chosen(first, second, &given[k], &self.half_way(k), self.progress[k].clone());
+                ways[k] = chosen(first, second, &given[k], &self.judged(k, pegs), self.progress[k].clone());
             }
         }
         if !ways.iter().any(|way| matches!(way, Way::Flows(..))) {
@@ -227,8 +228,20 @@ impl Sequence {
         self.exchanged[k].iter().map(Vec::len).max().unwrap_or_default()
     }
 
+    /// The drawing half way between key `k` and the next one by which their movement is judged. It is that of the two drawings alone and half
+    /// way along every path: spacing and other keys say when something moves, not whether the movement can be believed.
+    fn judged(&self, k: usize, pegs: &GivenPegs) -> Half {
+        let linear = |key: &Key| Key { spacing: Spacing::Timing(Timing::Linear), ..key.clone() };
+        let keys = self.keys[k..k + 2].iter().map(linear).collect();
+        let of = (k..k + 2).map(|key| pegs.of.get(key).cloned().unwrap_or_default()).collect();
+        let pegs = GivenPegs { tree: pegs.tree.clone(), of };
+        let options = Options { contacts: false, ..self.options };
+        let (matchings, exchanged) = (vec![self.matchings[k].clone()], vec![self.exchanged[k].clone()]);
+        Self::carried(keys, matchings, exchanged, &pegs, &options, Some(0)).half_way(0)
+    }
+
     /// The drawing half way between key `k` and the next one by the matched strokes.
-    pub(super) fn half_way(&self, k: usize) -> Half {
+    fn half_way(&self, k: usize) -> Half {
         let (from, to): (&Key, &Key) = (&self.keys[k], &self.keys[k + 1]);
         let maps = self.motion.maps(k, 0.5, 0.5 * (f64::from(from.frame) + f64::from(to.frame)));
         let moves = |t: &usize| {
@@ -253,7 +266,7 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Captured, Options};
+    use super::super::Captured;
     use super::*;
     use crate::flow::tests::{cut, figure, moved};
     use crate::peg::{Peg, PegKey, PegTree};
@@ -375,6 +388,26 @@ mod tests {
         second.sort_by_key(|stroke| (stroke.points[0].y as i64 * 37) % 101);
         let matching = Matching { pairs: pairs(12), ..Matching::default() };
         assert!(!is_whole(&matching, &first, &second), "what lay together is scattered");
+    }
+
+    #[test]
+    fn spacing_and_other_keys_do_not_decide_what_is_believed() {
+        let judged = |spacing: Spacing, keys: usize| {
+            let at = |k: usize| cut(&figure(0.0), 400.0, &by(k as f64));
+            let key = |k: usize| Key { frame: 8 * k as i32, strokes: at(k), spacing: spacing.clone(), corner: false };
+            let pair = |k| Pair { from: k, to: k, reversed: false, start: 0.0, confidence: 0.5, by_hand: false };
+            let pairs = (0..at(0).len()).map(pair).collect();
+            let matchings = vec![Matching { pairs, ..Matching::default() }; keys - 1];
+            let keys = (0..keys).map(key).collect();
+            let sequence = Sequence::new(keys, &matchings, &GivenPegs::default(), &Options::default()).unwrap();
+            sequence.judged(0, &GivenPegs::default())
+        };
+        let linear = judged(Spacing::Timing(Timing::Linear), 2);
+        assert!(!linear.moving.is_empty());
+        for spacing in [Spacing::Smooth, Spacing::Timing(Timing::EaseIn), Spacing::Chart(vec![0.9; 7])] {
+            assert_eq!(judged(spacing.clone(), 2), linear, "{spacing:?}");
+            assert_eq!(judged(spacing.clone(), 3), linear, "{spacing:?}");
+        }
     }
 
     #[test]
