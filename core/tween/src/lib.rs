@@ -10,6 +10,7 @@
 //! - [`breakdown`]: the frame on which one more drawing helps most
 //! - [`hidden`]: which parts of lines a filled shape in front covers
 //! - `flow`: the movement of ink that is not matched stroke by stroke
+//! - `affine`: a map taken apart into its turn and its stretch
 //! - `grid`: nearest places among many, `ink`: places along lines, `line`: strokes by shares of their length, `chain`:
 //!   strokes end to end
 //!
@@ -41,6 +42,7 @@
 
 #![forbid(unsafe_code)]
 
+mod affine;
 mod angle;
 pub mod between;
 pub mod breakdown;

@@ -2,12 +2,14 @@
 //! between corresponding [`super::corners`].
 //!
 //! If an artist drew both strokes with the same number of points, the points themselves may correspond. They are used
-//! where points of equal number have nearly equal shares of the length.
+//! where points of equal number have nearly equal shares of the length, or where an affine map leads each to its counterpart: an eye that
+//! closes is a copy that was squashed, and the shares of its points change.
 
 use super::super::line::{Line, vertex_shares};
 use super::super::matching::Pair;
 use super::super::stroke::Stroke;
 use super::corners::Shares;
+use crate::affine::{Affine, COPY};
 use rototoon_base::geometry::Point;
 
 /// Largest mean difference of shares at which points of equal number are taken.
@@ -71,7 +73,7 @@ impl Places {
         }
     }
 
-    /// The counterpart's own points, if there are as many and they have nearly the same shares.
+    /// The counterpart's own points, if there are as many and they have nearly the same shares, or are a changed copy.
     fn own_points(&self, stroke: &Stroke, other: &Stroke, reversed: bool, start: f64) -> Option<Vec<usize>> {
         let own = self.own.as_ref()?;
         let n = stroke.points.len();
@@ -94,7 +96,11 @@ impl Places {
             apart(here[i], walked)
         };
         let mean = (0..n).map(off).sum::<f64>() / n.max(1) as f64;
-        (mean <= MEAN_OFF).then(|| own.iter().map(|&i| index(i)).collect())
+        let copied = || {
+            let there: Vec<Point> = (0..n).map(|i| other.points[index(i)]).collect();
+            Affine::fit(&stroke.points, &there).is_some_and(|affine| affine.residual <= COPY)
+        };
+        (mean <= MEAN_OFF || copied()).then(|| own.iter().map(|&i| index(i)).collect())
     }
 }
 

@@ -11,8 +11,8 @@
 //!    Rangarajan 1996): every choice keeps a weight, each choice supports the choices of its neighbours that fit it,
 //!    and the weights sharpen from round to round.
 //! 5. An exact assignment ([`rototoon_base::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
-//!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times. `turns`
-//!    settles how strokes turn whose shape does not show it.
+//!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times. `squash`
+//!    tells shapes that are squashed from shapes that turn ([`crate::affine`]), and `turns` settles how strokes turn whose shape does not show it.
 //! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
 //!    go on the other drawing.
 //! 7. Where much of the ink is without a sure counterpart, the drawings may be cut into pieces in different ways.
@@ -36,6 +36,7 @@ mod outline;
 mod pieces;
 mod relaxation;
 mod similarity;
+mod squash;
 mod start;
 mod turns;
 mod unchanged;
@@ -250,6 +251,7 @@ fn chosen(
         }
         around = movement::around_each(a, b, &found, &held);
     }
+    squash::settle(a, b, &mut found);
     turns::settle((a, b), &ways, &mut found);
     Ok((found, around))
 }
@@ -280,7 +282,11 @@ fn laid_out(first: &[Stroke], second: &[Stroke], found: &[Option<Chosen>], fixed
 
 /// The position of a stroke's first point on its counterpart, as [`Pair::start`] has it.
 fn started(stroke: &Stroke, other: &Stroke, way: &Way) -> f64 {
-    if stroke.closed && other.closed { start::refined(stroke, other, way.start, way.reversed) } else { 0.0 }
+    match stroke.closed && other.closed {
+        true if way.exact => way.start,
+        true => start::refined(stroke, other, way.start, way.reversed),
+        false => 0.0,
+    }
 }
 
 /// The user's decision about a stroke of the first drawing.

@@ -157,6 +157,11 @@ fn proposals(a: &Figure, b: &Figure, ways: &Ways, options: &Options) -> Vec<Move
 /// The movement around each stroke, fitted to its matched neighbours and held by the movement `held` of the complete
 /// drawing.
 pub(super) fn around_each(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], held: &Movement) -> Vec<Movement> {
+    held_by(a, b, chosen, held, a.radius)
+}
+
+/// The same, where `held` counts as a pair at distance `far` from the centre.
+pub(super) fn held_by(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], held: &Movement, far: f64) -> Vec<Movement> {
     let mut known = Vec::new();
     for (outline, choice) in a.outlines.iter().zip(chosen) {
         if let (Some(from), Some(choice)) = (outline, choice)
@@ -175,7 +180,7 @@ pub(super) fn around_each(a: &Figure, b: &Figure, chosen: &[Option<Chosen>], hel
             .filter(|(p, _)| *p != own.centre)
             .map(|(p, q)| (near / (own.centre.distance_squared(p) + near), p, q))
             .collect();
-        fit(&pairs, held, a.radius)
+        fit(&pairs, held, far)
     };
     a.outlines.par_iter().map(fitted).collect()
 }

@@ -53,6 +53,8 @@ pub(super) struct Way {
     /// Position of this curve's first sample on the other curve, as a share of that curve's length from its first point
     /// forwards.
     pub start: f64,
+    /// Whether the start is a point of the other curve, and no sample near it.
+    pub exact: bool,
 }
 
 impl Outline {
@@ -75,15 +77,23 @@ impl Outline {
     /// All ways to lay this curve on `other`. Both must be closed or both open. The outer list is by direction, the
     /// inner one by start.
     pub fn all_ways(&self, other: &Self) -> Vec<Vec<Way>> {
-        let mut found = Vec::new();
-        for reversed in [false, true] {
-            let opposed = self.turning * other.turning == -1;
-            if self.turning * other.turning != 0 && reversed != opposed {
-                continue;
-            }
-            found.push(if self.closed { self.around(other, reversed) } else { vec![self.lay(other, reversed)] });
+        let ways = |reversed| if self.closed { self.around(other, reversed) } else { vec![self.lay(other, reversed)] };
+        self.directions(other).into_iter().map(ways).collect()
+    }
+
+    /// Whether the other curve may be read backwards: no, yes, or both.
+    pub fn directions(&self, other: &Self) -> Vec<bool> {
+        match self.turning * other.turning {
+            0 => vec![false, true],
+            turning => vec![turning == -1],
         }
-        found
+    }
+
+    /// This closed curve's samples, read as the counterpart of another one in a way.
+    pub fn read(&self, way: &Way) -> Vec<Point> {
+        let first = (way.start * SAMPLES as f64).round() as usize;
+        let at = |k: usize| if way.reversed { first + SAMPLES - k } else { first + k };
+        (0..SAMPLES).map(|k| self.places[at(k) % SAMPLES]).collect()
     }
 
     /// The ways to lay this closed curve on another one, by start. All starts are computed side by side for vector
@@ -130,7 +140,7 @@ impl Outline {
         let flat = |outline: &Self| outline.shape.iter().all(|p| *p == Point::ZERO);
         let residual = if flat(self) && flat(other) { 0.0 } else { (1.0 - factor.length_squared()).clamp(0.0, 1.0) };
         let steps = if self.closed { SAMPLES } else { SAMPLES - 1 };
-        Way { residual, turn: factor.to_angle(), reversed, start: first as f64 / steps as f64 }
+        Way { residual, turn: factor.to_angle(), reversed, start: first as f64 / steps as f64, exact: false }
     }
 
     /// The similarity that lays this curve on `other` in the given way.
