@@ -19,7 +19,8 @@
 //!    `fragments` puts pieces that continue each other together, on both drawings (`joins`), and matches the chains. What
 //!    is surer is kept.
 //!
-//! Pairs made by hand stay as they are, and so do strokes that are on both drawings point by point (`unchanged`). They also count as
+//! Pairs made by hand stay as they are, and so do strokes that are on both drawings point by point (`unchanged`) or stand
+//! together where they stood (`standing`). They also count as
 //! neighbours of the other strokes. Strokes of different pegs are never pairs.
 //!
 //! Limits: two equal limbs that have changed places can only be told apart by the strokes attached to them, by their
@@ -37,6 +38,7 @@ mod pieces;
 mod relaxation;
 mod similarity;
 mod squash;
+mod standing;
 mod start;
 mod turns;
 mod unchanged;
@@ -48,6 +50,7 @@ use outline::Way;
 use relaxation::Chosen;
 use rototoon_base::scene::{Cancelled, Progress};
 use similarity::Movement;
+use unchanged::Unchanged;
 
 /// Rounds of matching. After each round the movement around each stroke is fitted anew.
 const ROUNDS: usize = 3;
@@ -197,12 +200,20 @@ pub fn match_strokes(
     checked(first).map_err(MatchingError::First)?;
     checked(second).map_err(MatchingError::Second)?;
     let mut fixed = fixed(first.len(), second.len(), by_hand)?;
-    let unchanged = unchanged::fix(first, second, &mut fixed);
+    let unchanged = still(first, second, &mut fixed);
     let matching = stroke_by_stroke(first, second, &fixed, options, progress)?;
     let mut matching = fragments::surer(first, second, &fixed, matching, options, progress)?;
     unchanged::found(&mut matching, &unchanged);
     progress.report("matching strokes", 1.0)?;
     Ok(matching)
+}
+
+/// Fixes the strokes that stand where they stood. Returns them by their index on the first drawing.
+fn still(first: &[Stroke], second: &[Stroke], fixed: &mut [Fixed]) -> Vec<Unchanged> {
+    let Some(mut found) = unchanged::fix(first, second, fixed) else { return Vec::new() };
+    found.extend(standing::fix(first, second, fixed, &found));
+    found.sort_unstable_by_key(|found| found.from);
+    found
 }
 
 /// Matches the strokes as they are.

@@ -35,16 +35,16 @@ const CONFIDENCE: [f64; 2] = [1.0, 0.99];
 /// A stroke that is on both drawings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Unchanged {
-    from: usize,
-    to: usize,
+    pub from: usize,
+    pub to: usize,
     reversed: bool,
     start: f64,
     confidence: f64,
 }
 
 /// Fixes free strokes to the strokes of the other drawing that lie in the same place and look the same. Returns them by their index on
-/// the first drawing.
-pub(super) fn fix(first: &[Stroke], second: &[Stroke], fixed: &mut [Fixed]) -> Vec<Unchanged> {
+/// the first drawing; `None` where standing still proves nothing.
+pub(super) fn fix(first: &[Stroke], second: &[Stroke], fixed: &mut [Fixed]) -> Option<Vec<Unchanged>> {
     let on = ON * ink::size(first.iter().chain(second).flat_map(|s| &s.points));
     let boxes = second.iter().map(bounds).collect::<Vec<_>>();
     let mut same: Vec<(f64, usize, usize)> = Vec::new();
@@ -60,7 +60,7 @@ pub(super) fn fix(first: &[Stroke], second: &[Stroke], fixed: &mut [Fixed]) -> V
         if let Fixed::To(to) = fixed {
             let mut own = same.iter().filter(|same| same.1 == i).peekable();
             if own.peek().is_some() && !own.any(|same| same.2 == *to) {
-                return Vec::new();
+                return None;
             }
             free[*to] = false;
         }
@@ -73,19 +73,18 @@ pub(super) fn fix(first: &[Stroke], second: &[Stroke], fixed: &mut [Fixed]) -> V
         }
     }
     found.sort_unstable_by_key(|unchanged| unchanged.from);
-    found
+    Some(found)
 }
 
 /// The corners of the box around a stroke.
-fn bounds(stroke: &Stroke) -> [Point; 2] {
+pub(super) fn bounds(stroke: &Stroke) -> [Point; 2] {
     let grown = |[low, high]: [Point; 2], p: &Point| [low.min(*p), high.max(*p)];
     stroke.points.iter().fold([Point::INFINITY, Point::NEG_INFINITY], grown)
 }
 
 /// How far two lines are from each other where they lie on each other and look the same. 0 where they have the same points.
 fn apart(a: &Stroke, b: &Stroke, on: f64) -> Option<f64> {
-    let look = |s: &Stroke| (s.closed, s.colour, s.material, s.layer);
-    if look(a) != look(b) || !a.may_be(b) {
+    if !looks_alike(a, b) {
         return None;
     }
     if a.points == b.points {
@@ -97,15 +96,26 @@ fn apart(a: &Stroke, b: &Stroke, on: f64) -> Option<f64> {
     if low.distance(high) < LEAST * on || (lengths[0] - lengths[1]).abs() > LONGER * longer {
         return None;
     }
+    Some(farthest(a, b)).filter(|apart| *apart <= on).map(|apart| apart.max(f64::MIN_POSITIVE))
+}
+
+/// Whether nothing but its place tells a stroke from another one.
+pub(super) fn looks_alike(a: &Stroke, b: &Stroke) -> bool {
+    let look = |s: &Stroke| (s.closed, s.colour, s.material, s.layer);
+    look(a) == look(b) && a.may_be(b)
+}
+
+/// How far a place of one of two lines is at most from the other line.
+pub(super) fn farthest(a: &Stroke, b: &Stroke) -> f64 {
     let from = |a: &Stroke, b: &Stroke| {
         let samples = polyline::resample(&a.points, a.closed, SAMPLES);
         samples.iter().map(|p| polyline::distance(*p, &b.points, b.closed)).fold(0.0, f64::max)
     };
-    Some(from(a, b).max(from(b, a))).filter(|apart| *apart <= on).map(|apart| apart.max(f64::MIN_POSITIVE))
+    from(a, b).max(from(b, a))
 }
 
 /// How a stroke lies on its counterpart: in which direction, and where it starts.
-fn laid(from: usize, to: usize, a: &Stroke, b: &Stroke, confidence: f64) -> Unchanged {
+pub(super) fn laid(from: usize, to: usize, a: &Stroke, b: &Stroke, confidence: f64) -> Unchanged {
     let (on_a, on_b) = (Line::new(a), Line::new(b));
     let shares = |count: usize| (0..count).map(move |k| k as f64 / count as f64);
     let start = if a.closed {
@@ -221,7 +231,10 @@ mod tests {
         let size = ring(0.0, 0.0, 500.0);
         let line = |x: f64, length: f64| bar(Point::new(x, 0.0), 0.0, length);
         let of = |a: Stroke, b: Stroke| {
-            fix(&[size.clone(), a], &[size.clone(), b], &mut [Fixed::Free; 2]).iter().any(|found| found.from == 1)
+            fix(&[size.clone(), a], &[size.clone(), b], &mut [Fixed::Free; 2])
+                .unwrap()
+                .iter()
+                .any(|found| found.from == 1)
         };
         assert!(of(line(0.0, 100.0), line(0.5, 100.0)));
         assert!(!of(line(0.0, 100.0), line(5.0, 100.0)));
