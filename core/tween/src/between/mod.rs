@@ -35,6 +35,7 @@ mod deform;
 mod flowing;
 mod hung;
 mod join;
+mod joint;
 mod leaving;
 mod look;
 mod motion;
@@ -110,7 +111,8 @@ pub struct Key {
 /// Options of the in-betweens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Strength of arcs, from 0 for straight paths to 1 for full turns about the fixed point of a movement.
+    /// Strength of arcs, from 0 for straight paths to 1 for full turns about the fixed point of a movement. What turns about a
+    /// joint that is drawn always goes all the way round it.
     pub arcs: f64,
     /// Whether shapes change as rigidly as possible. Otherwise points move straight in their group's frame.
     pub rigid: bool,

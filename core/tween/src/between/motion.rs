@@ -6,13 +6,14 @@
 //!
 //! Between keys the turn and the logarithm change evenly along the path. The pivot of a root moves along an arc: at
 //! full strength, a body that turns by φ on its way from A to B goes round the fixed point of that movement. A drawing
-//! seldom shows the true pivot, so the arc is weaker by default ([`super::Options::arcs`]). Given pegs replace groups
-//! and move as given.
+//! seldom shows the true pivot, so the arc is weaker by default ([`super::Options::arcs`]). Where it does show it, the arc is full
+//! (`joint`). Given pegs replace groups and move as given.
 
 use super::super::angle::wrap;
 use super::super::peg::PegTree;
 use super::super::peg::propose::{Group, Moving};
 use super::join::{Asked, Ends, Run, runs};
+use super::joint;
 use super::tracks::Track;
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
@@ -44,6 +45,8 @@ struct Mover {
     radius: f64,
     /// Pose on each key.
     poses: Vec<Pose>,
+    /// Strength of the arc in each span.
+    arcs: Vec<f64>,
     /// Progress in each span.
     runs: Vec<Run>,
 }
@@ -56,7 +59,6 @@ pub(super) struct Motion {
     order: Vec<usize>,
     /// The group or given peg that carries each track.
     pub carriers: Vec<Carrier>,
-    arcs: f64,
     tree: PegTree,
 }
 
@@ -95,8 +97,8 @@ impl Motion {
             }
         }
         let order = order(groups);
-        let mut motion = Self { movers: Vec::new(), order, carriers, arcs, tree: hung.tree.clone() };
-        motion.movers = poses(&moving, groups, keys, &motion.order);
+        let mut motion = Self { movers: Vec::new(), order, carriers, tree: hung.tree.clone() };
+        motion.movers = poses(&moving, groups, keys, &motion.order, arcs);
         for g in 0..motion.movers.len() {
             let ends: Vec<_> = (0..keys.saturating_sub(1)).map(|k| Some(motion.ends(g, k))).collect();
             motion.movers[g].runs = runs(&ends, asked);
@@ -139,18 +141,15 @@ impl Motion {
         Pose {
             turn: a.turn + s * (b.turn - a.turn) + beside(2) / mover.radius,
             growth: a.growth + s * (b.growth - a.growth) + beside(3) / mover.radius,
-            at: self.arc(g, a, b, s) + Point::new(beside(0), beside(1)),
+            at: self.arc(g, k, s) + Point::new(beside(0), beside(1)),
         }
     }
 
-    /// Strength of the group's arc. A group on a joint moves straight in its parent's frame.
-    fn strength(&self, g: usize) -> f64 {
-        if self.movers[g].parent.is_some() { 0.0 } else { self.arcs }
-    }
-
-    /// The pivot along its arc: A + (B − A) (e^(l s) − 1)/(e^l − 1) with l = growth + i turn.
-    fn arc(&self, g: usize, a: &Pose, b: &Pose, s: f64) -> Point {
-        let l = Point::new(b.growth - a.growth, b.turn - a.turn) * self.strength(g);
+    /// The pivot along its arc in span `k`: A + (B − A) (e^(l s) − 1)/(e^l − 1) with l = growth + i turn.
+    fn arc(&self, g: usize, k: usize, s: f64) -> Point {
+        let mover = &self.movers[g];
+        let (a, b) = (&mover.poses[k], &mover.poses[k + 1]);
+        let l = Point::new(b.growth - a.growth, b.turn - a.turn) * mover.arcs[k];
         let way = b.at - a.at;
         let exp = |z: Point| Point::from_angle(z.y) * z.x.exp();
         let whole = exp(l) - Point::X;
@@ -169,7 +168,7 @@ impl Motion {
         let mover = &self.movers[g];
         let (a, b) = (&mover.poses[k], &mover.poses[k + 1]);
         let slope = |from: f64, to: f64| {
-            let way = (self.arc(g, a, b, to) - self.arc(g, a, b, from)) / STEP;
+            let way = (self.arc(g, k, to) - self.arc(g, k, from)) / STEP;
             vec![way.x, way.y, mover.radius * (b.turn - a.turn), mover.radius * (b.growth - a.growth)]
         };
         Ends { start: slope(0.0, STEP), end: slope(1.0 - STEP, 1.0) }
@@ -197,7 +196,7 @@ fn order(groups: &[Group]) -> Vec<usize> {
     order
 }
 
-fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> Vec<Mover> {
+fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize], arcs: f64) -> Vec<Mover> {
     let worlds = worlds(strokes, groups, keys, order);
     let mover = |(g, group): (usize, &Group)| {
         let own: Vec<Point> = group
@@ -218,7 +217,19 @@ fn poses(strokes: &[Moving], groups: &[Group], keys: usize, order: &[usize]) -> 
         };
         let poses =
             (0..keys.max(1)).map(|k| if k < keys { pose(k) } else { Pose { turn: 0.0, growth: 0.0, at: anchor } });
-        Mover { parent: group.parent, anchor, radius: square.sqrt().max(1.0), poses: poses.collect(), runs: Vec::new() }
+        let strength = |k: usize| {
+            let step = |g: usize| worlds[g][k + 1].0.after(&worlds[g][k].0.inverse());
+            let against = group.parent.map_or(Similarity::IDENTITY, |parent| step(parent).inverse());
+            match group.parent {
+                _ if joint::is_about(&against.after(&step(g)), g, k, groups, strokes) => 1.0,
+                // A group whose pivot is its hinge moves straight in its parent's frame.
+                Some(_) => 0.0,
+                None => arcs,
+            }
+        };
+        let arcs = (0..keys.saturating_sub(1)).map(strength).collect();
+        let (poses, runs) = (poses.collect(), Vec::new());
+        Mover { parent: group.parent, anchor, radius: square.sqrt().max(1.0), poses, arcs, runs }
     };
     groups.iter().enumerate().map(mover).collect()
 }
