@@ -149,7 +149,7 @@ def test_an_in_between_with_another_look_becomes_a_key(addon, change):
     kept = content(addon, ob, "Lines", 5)
     move(addon, ob, 9, by=0.4)
     bpy.ops.rototoon.update_in_betweens()
-    assert said(addon).text.endswith("1 drawing that you had changed is a key now: frame 5")
+    assert "1 drawing that you had changed is a key now: frame 5" in said(addon).text
     assert frames(addon, ob)[5] == "BREAKDOWN" and frames(addon, ob)[4] == frames(addon, ob)[6] == "GENERATED"
     now = content(addon, ob, "Lines", 5)
     for side in ("point", "curve"):
@@ -179,7 +179,7 @@ def test_an_in_between_with_a_new_stroke_becomes_a_key_too(addon):
     add(addon, ob, "Lines", 5, [wave(20)])
     move(addon, ob, 9, by=0.4)
     bpy.ops.rototoon.update_in_betweens()
-    assert said(addon).text.endswith("1 drawing that you had changed is a key now: frame 5")
+    assert "1 drawing that you had changed is a key now: frame 5" in said(addon).text
     assert frames(addon, ob)[5] == "BREAKDOWN" and len(content(addon, ob, "Lines", 5).sizes) == 4
     bpy.ops.rototoon.clear_in_betweens()
     assert list(frames(addon, ob)) == [1, 5, 9]

@@ -314,7 +314,7 @@ mod tests {
             (0..12).map(|k| Point::new(9.0 * f64::from(k), (f64::from(k) * 0.4).sin() * 5.0)).collect(),
             false,
         );
-        let pair = matched(&[arm.clone()], &[turned(&arm, 2.0, Point::ZERO)]).pairs[0];
+        let pair = matched(std::slice::from_ref(&arm), &[turned(&arm, 2.0, Point::ZERO)]).pairs[0];
         assert!(!pair.reversed, "an arm that swings alone");
     }
 }
