@@ -107,8 +107,8 @@ fn what_was_compared_before_a_pin_is_what_a_new_tracker_finds_after_it() {
     scene.parts[0].pins.entry(2).or_default().insert(0, pinned);
     let again = tracker.track(&scene, &film, &Silent).unwrap();
     let anew = Tracker::new(TrackOptions::default()).track(&scene, &film, &Silent).unwrap();
-    assert_eq!(again, anew);
+    assert_eq!(again.parts, anew.parts);
     assert_ne!(again.parts[0], first.parts[0], "the pin moves its part");
     scene.parts[0].pins.clear();
-    assert_eq!(tracker.track(&scene, &film, &Silent).unwrap(), first, "without the pin all is as before");
+    assert_eq!(tracker.track(&scene, &film, &Silent).unwrap().parts, first.parts, "without the pin all is as before");
 }
