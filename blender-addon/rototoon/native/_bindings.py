@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x73a55e71f4d964be
+HEADER_HASH = 0xd1224f8a0d228f51
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0

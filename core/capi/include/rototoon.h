@@ -146,7 +146,8 @@ RototoonStatus rototoon_suggest_breakdown(const int32_t *offsets,
                                           struct RototoonText **error);
 
 // Replaces the clicks of the painter, `fills` in the document. `frames` has `click_count` frame numbers, in any order.
-// `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1; paper is a colour too.
+// `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1, or three NaN for a region that stays without
+// paint.
 // On a frame, clicks keep their order. The painted regions stay until `rototoon_session_fill` runs. Without clicks the
 // field is removed.
 RototoonStatus rototoon_session_set_fills(const struct RototoonSession *session,
