@@ -16,7 +16,8 @@
 //! layer whose time is remapped or stretched is refused, because its frames are not those of the footage.
 
 use super::coordinate;
-use super::outlines::{Detail, Keys, Knot, Outlines};
+use super::knot::Knot;
+use super::outlines::{Detail, Keys, Outlines};
 use rototoon_base::scene::{FalloffCurve, FrameNumber, Part, Scene};
 use std::fmt::Write;
 

@@ -16,8 +16,9 @@
 //! Limits: masks are not connected to each other or to a tool; which goes where is the compositor's choice. A soft edge is a number of the
 //! whole mask in Fusion and is left at 0. Fusion itself has not been tried.
 
+use super::knot::Knot;
 use super::names::joined;
-use super::outlines::{Detail, Keys, Knot, Outlines, turning};
+use super::outlines::{Detail, Keys, Outlines, turning};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Scene};

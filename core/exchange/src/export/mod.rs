@@ -10,6 +10,7 @@
 //! - [`nuke`](mod@nuke): a RotoPaint node for Nuke
 //! - [`silhouette`](mod@silhouette): Silhouette shapes
 //! - `names`: names of parts in the characters of a format
+//! - `knot`: points with handles
 //! - [`outlines`]: contours with the same number of points on every frame
 //! - `presence`: when a part is there
 //! - [`xml`]: escaping of text for XML
@@ -18,6 +19,7 @@ pub mod after_effects;
 pub mod archive;
 mod bezier;
 pub mod fusion;
+mod knot;
 mod names;
 pub mod natron;
 pub mod natron_project;

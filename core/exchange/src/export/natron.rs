@@ -15,7 +15,8 @@
 //! Limits: Natron offers scripts no open curves; an open part becomes a curve that is not closed yet, and has no matte.
 
 use super::coordinate;
-use super::outlines::{Detail, Knot, Outlines};
+use super::knot::Knot;
+use super::outlines::{Detail, Outlines};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Scene;

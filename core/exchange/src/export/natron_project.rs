@@ -24,9 +24,10 @@
 
 use super::archive::{Archive, Class};
 use super::coordinate;
+use super::knot::Knot;
 use super::names::written;
 use super::natron::MOST_FALLOFF;
-use super::outlines::{Detail, Keys, Knot, Outlines, turning};
+use super::outlines::{Detail, Keys, Outlines, turning};
 use super::presence::presence;
 use super::xml::plain;
 use rototoon_base::geometry::Point;

@@ -12,8 +12,9 @@
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format" (version 1.2 of the curves, since Nuke 7). As in
 //! Nuke, a number is an `x` and the hexadecimal digits of a 32-bit float.
 
+use super::knot::Knot;
 use super::names::written;
-use super::outlines::{Detail, Keys, Knot, Outlines};
+use super::outlines::{Detail, Keys, Outlines};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};

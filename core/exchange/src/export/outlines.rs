@@ -4,6 +4,7 @@
 //! become Bézier curves of few points (`bezier`). Without snapped paths the points are the control points, and the sides are straight.
 
 use super::bezier::Curves;
+use super::knot::Knot;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
@@ -19,29 +20,6 @@ pub enum Detail {
 impl From<f64> for Detail {
     fn from(spacing: f64) -> Self {
         Self::Spacing(spacing)
-    }
-}
-
-/// A point of a contour, with handles relative to it. Handles of 0 make straight sides.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Knot {
-    /// The point, in pixels.
-    pub at: Point,
-    /// The handle before it.
-    pub before: Point,
-    /// The handle after it.
-    pub after: Point,
-}
-
-impl Knot {
-    /// A point without handles.
-    pub fn bare(at: Point) -> Self {
-        Self { at, before: Point::ZERO, after: Point::ZERO }
-    }
-
-    /// The places of the handles before and after the point.
-    pub fn handles(&self) -> [Point; 2] {
-        [self.at + self.before, self.at + self.after]
     }
 }
 

@@ -6,8 +6,9 @@
 //! has nothing but keys says so in an attribute, since an import would take it for absent between them. The root says which frames of the document it shows. Parts are drawn in the order of
 //! depth, far ones first.
 
+use super::knot::Knot;
 use super::names::written;
-use super::outlines::{Detail, Knot, Outlines};
+use super::outlines::{Detail, Outlines};
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::resample;

@@ -17,7 +17,7 @@
 mod cubic;
 mod joints;
 
-use super::outlines::Knot;
+use super::knot::Knot;
 use cubic::{End, Fitted, fit};
 use joints::{Joint, is_smooth};
 use rototoon_base::geometry::{Point, polyline};
