@@ -16,9 +16,10 @@ from rototoon.fills import Click
 from ..blender import colours
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
+from ..common import polygons
 from ..lines import doubts
 from ..paint import clicks as paint_clicks
-from ..paint import filling, given, painted, shapes, sheets
+from ..paint import filling, given, painted, sheets
 from ..paint import plan as pl
 
 
@@ -85,11 +86,11 @@ def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dic
     for shape in sheets.shapes_of(ob, content, mapping, range(len(numbers))):
         first = shape.strokes[0]
         number, (outline, *others) = int(numbers[first]) or next(fresh), sheets.loops_of(shape)
-        size = abs(shapes.area(outline))
+        size = abs(polygons.area(outline))
         if number in found and found[number][0] >= size:
             continue
         region: dict[str, Any] = {"outline": outline.round(4).tolist()}
-        holes = [hole.round(4).tolist() for hole in others if shapes.inside([outline], hole.mean(0, keepdims=True))[0]]
+        holes = [hole.round(4).tolist() for hole in others if polygons.inside([outline], hole.mean(0, keepdims=True))[0]]
         if holes:
             region["holes"] = holes
         found.pop(number, None)

@@ -17,6 +17,7 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
+from ..common import polygons
 from ..lines import plan as lines_plan
 from ..lines import properties
 from . import clicks, filling, painted, shapes, sheets
@@ -103,7 +104,7 @@ def _regions(ob, pattern: str, frame: int, asked: list[clicks.Click], sensitivit
 
 def _at(regions: list[painted.Region], place: tuple[float, float]) -> painted.Region | None:
     """The region at a place. Regions of a picture do not lie over each other."""
-    return next((region for region in regions if shapes.inside(region.loops, np.array([place]))[0]), None)
+    return next((region for region in regions if polygons.inside(region.loops, np.array([place]))[0]), None)
 
 
 def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own: list[clicks.Click], new: clicks.Click) -> None:
@@ -146,7 +147,7 @@ def _within(ob, sheet: sheets.Sheet, mapping, region: painted.Region) -> set[int
     found: set[int] = set()
     for shape in sheets.shapes_of(ob, sheet.content, mapping, range(len(sheet.made))):
         places = shapes.middles(shape.loops)
-        if not len(places) or shapes.inside(region.loops, places).mean() < MOSTLY:
+        if not len(places) or polygons.inside(region.loops, places).mean() < MOSTLY:
             continue
         first = shape.strokes[0]
         if sheet.made[first] or _is_buckets(sheet.content, first) or region.covered([shape]):
@@ -178,6 +179,6 @@ def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] |
     mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
     seen = colours.of_strokes(ob, content, colours.palette(ob))
     for shape in reversed(sheets.shapes_of(ob, content, mapping, range(len(content.sizes)))):
-        if shapes.inside(shape.loops, np.array([place], np.float64))[0]:
+        if polygons.inside(shape.loops, np.array([place], np.float64))[0]:
             return tuple(seen[shape.strokes[0]].clip(0, 1).tolist())
     return None

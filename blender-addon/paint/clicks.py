@@ -8,6 +8,7 @@ import numpy as np
 
 from ..blender import colours
 from ..blender import grease_pencil as gp
+from ..common import polygons
 from . import sheets, shapes
 
 MOST = 3
@@ -45,12 +46,12 @@ def of(ob, sheet: sheets.Sheet, mapping, height: int) -> list[Click]:
 def _places(shape: sheets.Shape, above: list[sheets.Shape], exact: np.ndarray, height: int) -> np.ndarray:
     """Where to click for a shape: where the artist clicked with the bucket, otherwise well inside and not below another shape."""
     place = np.asarray(exact[None, :2], np.float64)
-    if exact[2] > 0 and shapes.inside(shape.loops, place)[0]:
+    if exact[2] > 0 and polygons.inside(shape.loops, place)[0]:
         return place
     places = shapes.middles(shape.loops).round(4)
     open_ = np.ones(len(places), bool)
     for other in above:
-        open_ &= ~shapes.inside(other.loops, places)
+        open_ &= ~polygons.inside(other.loops, places)
     # A shape that others cover completely still has its colour.
     places = places[open_] if open_.any() else places
     return _spread(places, shapes.clearance(shape.loops, places), LEAST * height) if len(places) else places

@@ -17,9 +17,9 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
-from ..common import jobs
+from ..common import jobs, polygons
 from ..lines import plan as lines_plan
-from . import clicks, doubts, painted, shapes, sheets
+from . import clicks, doubts, painted, sheets
 from . import plan as pl
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -199,6 +199,6 @@ def _mark(own: st.Content, sheet: sheets.Sheet, regions: list[painted.Region], m
     for click in reversed(made_of):
         place = np.array([click.at])
         for region in regions:
-            if shapes.inside(region.loops, place)[0]:
+            if polygons.inside(region.loops, place)[0]:
                 numbers[places[click.stroke]] = region.number
     own.set_strokes(gp.TRACK, numbers)

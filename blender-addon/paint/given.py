@@ -15,7 +15,8 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender import strokes as st
 from ..blender.placement import Mapper
-from . import filling, painted, shapes, sheets
+from ..common import polygons
+from . import filling, painted, sheets
 
 DISC = 0.008
 """Radius of a disc, as a share of the picture's height."""
@@ -53,7 +54,7 @@ def _clicked(click: Click, regions: list[painted.Region], height: int) -> painte
     """The region of a click, or a disc."""
     place, colour = np.array([click.at]), np.array(click.colour)
     for region in regions:
-        if np.abs(region.colour - colour).max() < SAME and shapes.inside(region.loops, place)[0]:
+        if np.abs(region.colour - colour).max() < SAME and polygons.inside(region.loops, place)[0]:
             return region
     turn = 2 * np.pi * np.arange(12) / 12
     return painted.Region(0, place + DISC * height * np.stack([np.cos(turn), np.sin(turn)], 1), [], colour)

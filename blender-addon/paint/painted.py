@@ -10,6 +10,7 @@ import numpy as np
 from ..blender import fill_materials
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
+from ..common import polygons
 from ..lines import drawings as dr
 from . import sheets, shapes
 
@@ -40,7 +41,7 @@ class Region:
         places = shapes.middles(self.loops)
         under = np.zeros(len(places), bool)
         for shape in own:
-            under |= shapes.inside(shape.loops, places)
+            under |= polygons.inside(shape.loops, places)
         return len(places) > 0 and under.mean() >= COVERED
 
 

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ..common import polygons
+
 SCANS = 24
 """Number of lines across and down a shape on which places inside of it are looked for."""
 
@@ -19,7 +21,7 @@ def joined(outline: np.ndarray, holes: Sequence[np.ndarray]) -> np.ndarray:
     line = np.asarray(outline, np.float64)
     left = [_Hole(np.asarray(hole, np.float64), line) for hole in holes if len(hole) > 2]
     while left:
-        edges = _edges(line, *(hole.points for hole in left))
+        edges = polygons.edges(line, *(hole.points for hole in left))
         hole = left.pop(int(np.argmin([hole.away.min() for hole in left])))
         j = hole.seam(edges)
         i = int(np.flatnonzero((line == hole.to[j]).all(1))[0])
@@ -66,10 +68,6 @@ TRIED = 60
 """Most seams that are tried for a hole."""
 
 
-def _edges(*loops: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
-
-
 def _crosses(a: np.ndarray, b: np.ndarray, p: np.ndarray, q: np.ndarray) -> bool:
     """Whether the line from `a` to `b` crosses one of the edges from `p` to `q` at an inner point of both."""
     own = _side(a, b, p) * _side(a, b, q)
@@ -96,7 +94,7 @@ def parted(line: np.ndarray) -> list[np.ndarray]:
         inner = loop[a + 1 : b]
         outer = loop[: a + 1] + loop[b + 2 :]
         stack += [inner, outer]
-    areas = [abs(area(line[loop][:, :2])) for loop in found]
+    areas = [abs(polygons.area(line[loop][:, :2])) for loop in found]
     return [np.array(found[k], int) for k in np.argsort(areas, kind="stable")[::-1]]
 
 
@@ -111,41 +109,16 @@ def _seam(keys: list[bytes]) -> tuple[int, int] | None:
     return None
 
 
-def area(loop: np.ndarray) -> float:
-    """The area of a closed line (N, 2), with the sign of its direction."""
-    x, y = loop[:, 0], loop[:, 1]
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
-
-
-def inside(loops: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
-    """Which places (N, 2) are inside of a shape, which has an odd number of loops around each."""
-    found = np.zeros(len(places), bool)
-    if not len(loops) or not len(places):
-        return found
-    p, q = _edges(*loops)
-    for start in range(0, len(places), CHUNK):
-        x, y = places[start : start + CHUNK].T[..., None]
-        over = (p[:, 1] > y) != (q[:, 1] > y)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            at = p[:, 0] + (y - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
-        found[start : start + CHUNK] = (over & (x < at)).sum(1) % 2 == 1
-    return found
-
-
-CHUNK = 256
-"""Places that are looked at together, so that the arrays stay small."""
-
-
 def clearance(loops: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
     """The distance of places from the lines of a shape."""
-    p, q = _edges(*loops)
+    p, q = polygons.edges(*loops)
     way = q - p
     size = np.maximum((way**2).sum(1), 1e-12)
     found = np.empty(len(places))
-    for start in range(0, len(places), CHUNK):
-        off = places[start : start + CHUNK, None] - p
+    for start in range(0, len(places), polygons.CHUNK):
+        off = places[start : start + polygons.CHUNK, None] - p
         along = ((off * way).sum(2) / size).clip(0, 1)[..., None]
-        found[start : start + CHUNK] = np.sqrt(((off - along * way) ** 2).sum(2).min(1))
+        found[start : start + polygons.CHUNK] = np.sqrt(((off - along * way) ** 2).sum(2).min(1))
     return found
 
 
@@ -156,7 +129,7 @@ def middles(loops: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _across(loops: Sequence[np.ndarray]) -> np.ndarray:
-    p, q = _edges(*loops)
+    p, q = polygons.edges(*loops)
     low, high = p[:, 1].min(), p[:, 1].max()
     found = []
     for y in low + (high - low) * (np.arange(SCANS) + 0.5) / SCANS:

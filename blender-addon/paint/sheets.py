@@ -14,6 +14,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import stroke_lines
 from ..blender import strokes as st
+from ..common import polygons
 from ..lines import drawings as dr
 from ..lines import records
 from . import shapes
@@ -110,4 +111,4 @@ def _open(line: np.ndarray) -> np.ndarray:
 def loops_of(shape: Shape) -> list[np.ndarray]:
     """The outlines of a shape: its own first, then those of its holes."""
     loops = [line[loop] for line in shape.loops for loop in shapes.parted(line)]
-    return sorted(loops, key=lambda loop: -abs(shapes.area(loop)))
+    return sorted(loops, key=lambda loop: -abs(polygons.area(loop)))

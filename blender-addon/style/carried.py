@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..paint import shapes
+from ..common import polygons
 
 WAY = 24
 """Number of places on the way between two lines."""
@@ -65,21 +65,21 @@ def _along(way: Way, contours: dict[str, np.ndarray]) -> str | None:
     """The part in which most of the way lies."""
     shares = (np.arange(WAY) + 0.5) / WAY
     places = way.start + shares[:, None] * (way.end - way.start)
-    within = {name: float(shapes.inside([points], places).mean()) for name, points in contours.items()}
+    within = {name: float(polygons.inside([points], places).mean()) for name, points in contours.items()}
     most = max(within.values(), default=0.0)
     if most < LEAST:
         return None
     alike = [name for name, share in within.items() if share > most - ALIKE]
-    return min(alike, key=lambda name: abs(shapes.area(contours[name])))
+    return min(alike, key=lambda name: abs(polygons.area(contours[name])))
 
 
 def _hanging(way: Way, own: str, taken: set[str], contours: dict[str, np.ndarray]) -> list[str]:
     """The parts that hang on the end of a limb."""
-    most, end = abs(shapes.area(contours[own])), _reach(way, contours[own])
+    most, end = abs(polygons.area(contours[own])), _reach(way, contours[own])
     found = []
     for name, points in contours.items():
-        begins = shapes.inside([points], way.end[None])[0] or np.linalg.norm(points - way.end, axis=1).min() <= way.width / 2
-        if name not in taken and begins and _reach(way, points) > end and abs(shapes.area(points)) <= most:
+        begins = polygons.inside([points], way.end[None])[0] or np.linalg.norm(points - way.end, axis=1).min() <= way.width / 2
+        if name not in taken and begins and _reach(way, points) > end and abs(polygons.area(points)) <= most:
             found.append(name)
     return found
 

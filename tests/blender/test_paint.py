@@ -411,25 +411,26 @@ def test_clicks_are_taken_until_the_artist_leaves(addon, film, monkeypatch):  # 
 
 def test_holes_are_joined_by_seams_and_parted_again(addon):
     shapes = addon("paint.shapes")
+    polygons = addon("common.polygons")
     turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
     ring = np.stack([np.cos(-turn), np.sin(-turn)], 1)
     outline = np.array([(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)])
     holes = [np.array([x, y]) + size * ring for x, y, size in ((60, 50, 30), (100, 50, 8), (150, 30, 12), (150, 70, 12), (100, 62, 3))]
     line = shapes.joined(outline, holes)
-    assert shapes.area(line) == pytest.approx(shapes.area(outline) + sum(map(shapes.area, holes)), rel=1e-9), "a hole counts less"
+    assert polygons.area(line) == pytest.approx(polygons.area(outline) + sum(map(polygons.area, holes)), rel=1e-9), "a hole counts less"
     first, *others = shapes.parted(line)
     assert np.array_equal(np.sort(line[first], axis=0), np.sort(outline, axis=0))
-    sizes = sorted(abs(shapes.area(line[loop])) for loop in others)
-    assert sizes == pytest.approx(sorted(-shapes.area(hole) for hole in holes))
+    sizes = sorted(abs(polygons.area(line[loop])) for loop in others)
+    assert sizes == pytest.approx(sorted(-polygons.area(hole) for hole in holes))
     # No seam crosses another line: a place is inside of the one line where it is inside of the shape.
     places = np.random.default_rng(1).uniform((0, 0), (200, 100), (500, 2))
-    assert np.array_equal(shapes.inside([line], places), shapes.inside([outline, *holes], places))
+    assert np.array_equal(polygons.inside([line], places), polygons.inside([outline, *holes], places))
     found = shapes.middles([line])
-    assert shapes.inside([outline, *holes], found).all() and shapes.clearance([line], found).max() > 12
+    assert polygons.inside([outline, *holes], found).all() and shapes.clearance([line], found).max() > 12
 
 
 def test_scripts_paint_and_read_regions(addon, film):  # noqa: F811
-    scripting, shapes = addon("scripting"), addon("paint.shapes")
+    scripting, polygons = addon("scripting"), addon("common.polygons")
     with pytest.raises(RuntimeError, match='has no layer "Paint"'):
         scripting.regions(film)
     for place, colour in places(1):
@@ -444,7 +445,7 @@ def test_scripts_paint_and_read_regions(addon, film):  # noqa: F811
     found = scripting.regions(film)
     assert sorted(found) == [1, 2, 3] and [region.generated for region in found[1]] == [False] * 4
     for place, colour in places(3):
-        (own,) = [each for each in found[3] if shapes.inside([each.outline, *each.holes], np.array([place]))[0]]
+        (own,) = [each for each in found[3] if polygons.inside([each.outline, *each.holes], np.array([place]))[0]]
         assert own.colour == pytest.approx(colour, abs=1e-3) and own.generated and 0.5 < own.confidence < 1
     assert sorted(region.number for region in found[3]) == [1, 2, 3, 4]
 
