@@ -3,33 +3,35 @@
 //! A part that has several keys goes from its first one to its last one. Whoever keys the last drawing of a shot and not its last
 //! frame gets empty mattes at the end, which are found late.
 
+use super::report::runs;
 use super::untracked::named;
 use super::{Picture, RenderJob, frames_of};
 use crate::project::Document;
 use crate::scene::{FrameNumber, Part, Scene};
 use std::collections::BTreeMap;
 
-/// Stretches of frames that a message lists.
+/// Groups of parts that a message lists.
 const LISTED: usize = 4;
 
 /// The parts that end before the footage does, as a message for the user. `None` if there are none.
 ///
 /// Frames on which the artist has marked a part absent do not count.
 pub fn beyond(scene: &Scene) -> Option<String> {
-    let mut parts: BTreeMap<[FrameNumber; 2], Vec<&Part>> = BTreeMap::new();
+    let mut parts: BTreeMap<Vec<FrameNumber>, Vec<&Part>> = BTreeMap::new();
     for part in scene.parts.iter().filter(|part| part.keys.len() > 1) {
         let (Some(&begin), Some(&end)) = (part.keys.keys().next(), part.keys.keys().next_back()) else { continue };
         for (first, last) in
             [(scene.footage.first, begin.saturating_sub(1)), (end.saturating_add(1), scene.footage.last)]
         {
-            if (first..=last).any(|frame| !part.is_absent(frame) && part.points_at(frame).is_none()) {
-                parts.entry([first, last]).or_default().push(part);
+            let lacking: Vec<FrameNumber> = (first..=last).filter(|&frame| lacks(part, frame)).collect();
+            if !lacking.is_empty() {
+                parts.entry(lacking).or_default().push(part);
             }
         }
     }
     let told: Vec<String> = parts
         .iter()
-        .filter_map(|(range, parts)| Some(format!("{} on {}", named(parts.iter().copied())?, stretch(range))))
+        .filter_map(|(frames, parts)| Some(format!("{} on {}", named(parts.iter().copied())?, runs(frames))))
         .collect();
     let more = told.len().saturating_sub(LISTED);
     let listed = told[..told.len() - more].join(", ");
@@ -52,23 +54,13 @@ pub fn empty(document: &Document, job: &RenderJob) -> Option<String> {
         None => scene.parts.iter().collect(),
     };
     let range = frames_of(&scene.footage, job.frames.clone()).ok()?;
-    let mut stretches: Vec<[FrameNumber; 2]> = Vec::new();
-    let lacks = |part: &&Part, frame| part.points_at(frame).is_none() && !part.is_absent(frame);
-    for frame in range.filter(|&frame| parts.iter().all(|part| lacks(part, frame))) {
-        match stretches.last_mut() {
-            Some(last) if last[1] + 1 == frame => last[1] = frame,
-            _ => stretches.push([frame; 2]),
-        }
-    }
-    let more = stretches.len().saturating_sub(LISTED);
-    let listed = stretches[..stretches.len() - more].iter().map(stretch).collect::<Vec<_>>().join(", ");
-    let more = if more > 0 { format!(" and {more} more stretches") } else { String::new() };
-    (!stretches.is_empty()).then(|| format!("frames {listed}{more} show nothing: no part has a contour there"))
+    let lacking: Vec<FrameNumber> = range.filter(|&frame| parts.iter().all(|part| lacks(part, frame))).collect();
+    (!lacking.is_empty()).then(|| format!("frames {} show nothing: no part has a contour there", runs(&lacking)))
 }
 
-/// Frames as "3" or "5-8".
-fn stretch([first, last]: &[FrameNumber; 2]) -> String {
-    if first == last { first.to_string() } else { format!("{first}-{last}") }
+/// Whether a part has no contour on a frame on which it is not marked absent.
+fn lacks(part: &Part, frame: FrameNumber) -> bool {
+    part.points_at(frame).is_none() && !part.is_absent(frame)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::PipelineError;
 use super::excerpt;
+use super::report::runs;
 use crate::export;
 use crate::import::{self, Change, ImportError, Shapes, Taken};
 use crate::project::Document;
@@ -136,7 +137,7 @@ impl Imported {
             .iter()
             .filter_map(|taken| match &taken.change {
                 Change::Frames(frames) if frames.is_empty() => Some(format!("{:?} in its falloff", taken.name)),
-                Change::Frames(frames) => Some(format!("{:?} on {}", taken.name, listed(frames))),
+                Change::Frames(frames) => Some(format!("{:?} on {}", taken.name, runs(frames))),
                 _ => None,
             })
             .collect();
@@ -155,20 +156,6 @@ impl Imported {
         let told: Vec<String> = told.into_iter().chain(new).collect();
         (!told.is_empty()).then(|| told.join("; "))
     }
-}
-
-/// Frames as "3, 5-8".
-fn listed(frames: &[FrameNumber]) -> String {
-    let mut ranges: Vec<[FrameNumber; 2]> = Vec::new();
-    for &frame in frames {
-        match ranges.last_mut() {
-            Some(last) if last[1] + 1 == frame => last[1] = frame,
-            _ => ranges.push([frame; 2]),
-        }
-    }
-    let one =
-        |[first, last]: &[FrameNumber; 2]| if first == last { first.to_string() } else { format!("{first}-{last}") };
-    ranges.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
@@ -227,10 +214,5 @@ mod tests {
         assert_eq!(told, r#"changed "große Hand" on 4; as before "a\"b [1]"; new "leg""#);
         assert_eq!(found.scene.parts[0].keys.keys().copied().collect::<Vec<_>>(), [1, 4, 9]);
         assert_eq!(found.scene.parts.len(), 4);
-    }
-
-    #[test]
-    fn frames_are_listed_as_ranges() {
-        assert_eq!(listed(&[3, 5, 6, 7, 9]), "3, 5-7, 9");
     }
 }

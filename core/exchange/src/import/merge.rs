@@ -148,6 +148,11 @@ fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
     (!is_hidden).then(|| hidden::form(&shape.keys, frame))
 }
 
+/// Whether a frame lies on or between the keys of a shape.
+fn is_between_keys(shape: &Shape, frame: FrameNumber) -> bool {
+    shape.keys.range(..=frame).next().is_some() && shape.keys.range(frame..).next().is_some()
+}
+
 /// Changes a part where the file shows another contour, or another presence. Returns the frames.
 fn merge(part: &mut Part, shape: &Shape, footage: &Footage) -> Vec<FrameNumber> {
     let known = part.keys.keys().chain(part.tracks.keys()).chain(shape.keys.keys());
@@ -160,9 +165,8 @@ fn merge(part: &mut Part, shape: &Shape, footage: &Footage) -> Vec<FrameNumber> 
     let mut changed = Vec::new();
     for frame in frames {
         let own = part.points_at(frame);
-        let within = shape.keys.keys().next() <= Some(&frame) && Some(&frame) <= shape.keys.keys().next_back();
         // Beyond its keys a file says nothing of frames that the part does not have.
-        let file = of_file(shape, frame).filter(|_| own.is_some() || within);
+        let file = of_file(shape, frame).filter(|_| own.is_some() || is_between_keys(shape, frame));
         let is_other = match (own, &file) {
             (Some(own), Some(file)) => !is_same(own, file),
             (None, None) => false,
@@ -206,8 +210,7 @@ fn is_on_paths(part: &Part, shape: &Shape, footage: &Footage) -> bool {
     }
     let (near, share) = ON_PATH;
     let agrees = |frame: FrameNumber| {
-        let within = shape.keys.keys().next() <= Some(&frame) && Some(&frame) <= shape.keys.keys().next_back();
-        let file = of_file(shape, frame).filter(|_| within);
+        let file = of_file(shape, frame).filter(|_| is_between_keys(shape, frame));
         let (Some(own), Some(file)) = (part.outline(frame), &file) else {
             return part.points_at(frame).is_none() && file.is_none();
         };
