@@ -68,7 +68,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--measured", action="store_true", help="use the figures of the benchmark's last run")
     if not parser.parse_args().measured:
-        subprocess.run(["cargo", "bench", "-p", "rototoon", "--bench", "image"], cwd=ROOT, check=True)
+        subprocess.run(["cargo", "bench", "-p", "rototoon-image", "--bench", "image"], cwd=ROOT, check=True)
     picture = cv2.imread(str(PICTURE))
     if picture is None:
         sys.exit(f"{PICTURE}: found no picture; run without --measured first")

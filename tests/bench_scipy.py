@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares SciPy's sparse solver with Rototoon's on the normal equations of the tracker's energy.
 
-    ROTOTOON_DUMP=$PWD/target cargo bench -p rototoon --bench solver
+    ROTOTOON_DUMP=$PWD/target cargo bench -p rototoon-track --bench solver
     python3 tests/bench_scipy.py target/12x20.mtx target/25x100.mtx
 
 The script reads the MatrixMarket files that the benchmark has written and solves each with scipy.sparse.linalg.spsolve

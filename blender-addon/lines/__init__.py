@@ -14,6 +14,7 @@ the artist's and are never written; their strokes are followed.
 `tracing`             one run: reads, traces in a thread, writes
 `given`               drawings that a document gives, as a layer
 `doubts`              which traced strokes are in doubt, and where
+`spreading`           an edit of one drawing, done on all frames
 `pairing`             the same strokes of two neighbouring drawings, and clicks that change them
 `outline`             strokes that bound a part, as a closed contour
 ====================  ==============================================================================

@@ -9,7 +9,6 @@ never written. Each region is one closed stroke: its outline, joined with those 
 `shapes`              outlines with holes as one stroke, and places well inside of shapes
 `sheets`              the drawings of the layer with paint: the artist's shapes, and generated ones
 `clicks`              the artist's shapes as clicks
-`looks`               the material of each colour
 `painted`             regions as strokes
 `plan`                what one run asks the library
 `filling`             one run: paints in a thread, writes

@@ -15,7 +15,7 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "Project",
         EffectKind::File,
         SHAPES,
-        "A Rototoon project document, or shapes of Nuke (.nk), Natron (.ntp), Silhouette (.fxs) or SVG. Choosing a file loads it.",
+        "A Rototoon project document, or shapes of Nuke (.nk), Natron (.ntp), Silhouette (.fxs), Fusion (.setting, .comp) or SVG. Choosing a file loads it.",
     ),
     parameter("load", "Load", EffectKind::Button, SHAPES, "Loads the project's shapes into the composition."),
     parameter("save", "Save", EffectKind::Button, SHAPES, "Writes the composition's shapes to the project's file."),
