@@ -204,7 +204,8 @@ class Session:
         """Paints the regions of line drawings by the clicks of a painter, and stores ``fills`` and ``filled`` in the document.
 
         `clicks` are (frame, (x, y), (r, g, b)), in pixels and sRGB from 0 to 1; `None` takes those of the document. Work begins on the first
-        frame with clicks, and colours are carried from there to the other frames. Clicks on later frames overrule what was carried there.
+        frame on which at least half of the regions were clicked. Colours are carried from there to the other frames. A few clicks on another
+        frame overrule what was carried there.
 
         With `sensitivity` 2, ink may be half as dark as usual. `frames` are the first and the last frame, by default those of the
         footage; regions of other frames stay. Regions whose colour has less than `confidence` stay unpainted. `leave_out` is that of

@@ -144,7 +144,7 @@ class Breakdown:
     last: int
     """The key after it."""
     by: str
-    """``"picture"``: its in-between is farthest from the picture. ``"movement"``: no picture shows the movement, and it is the middle
+    """``"picture"``: by the pictures, a drawing there mends most of its span. ``"movement"``: no picture shows the movement, and it is the middle
     of the span that moves most."""
     distance: float
     """Pixels: how far the in-between is from its picture, or how far the span moves."""
@@ -171,7 +171,7 @@ def suggest_breakdown(
 
     `drawings` are keys and in-betweens in time order, with their `frames`; colours, labels and pairs do not count. `keys` are the
     frames of the keys. `footage` is the footage in the form of documents, with the same frames and pixels; `folder` is the folder of a
-    relative pattern. Where its pictures show the drawings, the suggestion is the in-between that is farthest from its picture.
+    relative pattern. Where its pictures show the drawings, the suggestion is the frame that mends most of its span.
     """
     if drawings.frames is None:
         raise RototoonError("frames: found none, expected one for each drawing")

@@ -18,8 +18,8 @@ class ROTOTOON_OT_suggest_breakdown(OnKeys, Scoped, Long, bpy.types.Operator):
     bl_idname = "rototoon.suggest_breakdown"
     bl_label = "Suggest Breakdown"
     bl_description = (
-        "Go to the frame on which one more drawing helps most, and mark it on the timeline: where the in-betweens differ most from the "
-        "footage. Without footage that shows the movement it is the middle of the span that moves most"
+        "Go to the frame on which one more drawing helps most, and mark it on the timeline: the frame that brings the in-betweens nearest "
+        "to the footage. Without footage that shows the movement it is the middle of the span that moves most"
     )
     bl_options = {"REGISTER", "UNDO"}
     changes = guard.NOTHING

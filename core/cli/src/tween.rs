@@ -18,8 +18,8 @@ pub fn command() -> Command {
         .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
         .args(of_movement())
         .arg(Arg::new("suggest").long("suggest").action(ArgAction::SetTrue).help(
-            "Says on which frame a breakdown, one more drawing, helps most: where the in-betweens differ most from the \
-             footage, or else in the middle of the span that moves most",
+            "Says on which frame a breakdown, one more drawing, helps most: the frame that brings the in-betweens \
+             nearest to the footage, or else the middle of the span that moves most",
         ))
         .args(arguments::of_stage(Stage::Run))
 }
