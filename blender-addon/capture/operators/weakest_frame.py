@@ -13,7 +13,7 @@ from ..polls import OnTracked
 class ROTOTOON_OT_weakest_frame(Guarded, OnTracked, bpy.types.Operator):
     bl_idname = "rototoon.weakest_frame"
     bl_label = "Go to Weakest Frame"
-    bl_description = "Go to the frame with the least confidence. The next key helps most there"
+    bl_description = "Go to the frame where your next key helps most: tracking is least sure around it, or a part was lost there"
     bl_options = {"REGISTER", "UNDO"}
     changes = guard.NOTHING
 
