@@ -13,9 +13,9 @@ use std::path::Path;
 /// How a shot came out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// Every contour is sure.
+    /// No key would make a contour or more right.
     Good,
-    /// Some contours want a key.
+    /// Some keys would each make a contour or more right.
     WantsKeys,
     /// A step failed, for this reason.
     Failed(String),
