@@ -32,7 +32,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(FrameNumber)),
         )
         .arg(arguments::frame_offset(
-            "What the file's frames are ahead of the document's: with 1000, 1001 becomes frame 1. Not for .svg, which counts from its own beginning",
+            "How far the file's frames are ahead of the document's: with 1000, 1001 becomes frame 1. Not for .svg, which counts from its own beginning",
         ))
 }
 

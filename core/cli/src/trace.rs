@@ -48,8 +48,8 @@ pub fn command() -> Command {
                 .long("keep-first")
                 .value_name("WHETHER")
                 .help(
-                    "The first frame was traced for itself before, and stays so. Then the frames up to the document's first drawing are bound to both. \
-                     A document with strokes of that run says so itself",
+                    "Says that an earlier run traced the first frame, which stays as it is. The frames from there to the document's first drawing \
+                     follow both. A document that has the strokes of that run needs no such option",
                 )
                 .conflicts_with("drawings")
                 .num_args(0..=1)

@@ -135,8 +135,20 @@ pub const PICTURE_PARAMETERS: [EffectParameter; 54] = [
         PICTURE,
         "Whether the parts are drawn on some frames only.",
     ),
-    parameter("shownFirst", "First shown", EffectKind::Integer(1, FRAMES, FRAMES), PICTURE, "First of these frames."),
-    parameter("shownLast", "Last shown", EffectKind::Integer(100, FRAMES, FRAMES), PICTURE, "Last of these frames."),
+    parameter(
+        "shownFirst",
+        "First shown",
+        EffectKind::Integer(1, FRAMES, FRAMES),
+        PICTURE,
+        "First frame on which the parts are drawn, with Limit frames.",
+    ),
+    parameter(
+        "shownLast",
+        "Last shown",
+        EffectKind::Integer(100, FRAMES, FRAMES),
+        PICTURE,
+        "Last frame on which the parts are drawn, with Limit frames.",
+    ),
     parameter("lines", "Lines", EffectKind::Group(false), None, "How the overlay draws outlines."),
     parameter(
         "lineWidth",

@@ -111,7 +111,7 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "Rename",
         EffectKind::Button,
         DRAW,
-        "Gives the selected part the new name. Its settings stay, and lists of parts that name it name it so.",
+        "Gives the selected part the new name. Its settings stay, and lists of parts get the new name too.",
     ),
     parameter(
         "newKey",
@@ -160,7 +160,7 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "Feather points",
         EffectKind::Button,
         DRAW,
-        "Gives the selected points this width over which the border fades, beside the feather of the part and of all parts.",
+        "Gives the selected points the width in Point feather, over which the border fades. The feathers of the part and of all parts add to it.",
     ),
     parameter(
         "deletePart",
@@ -181,7 +181,7 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "Hidden while lost",
         EffectKind::Button,
         DRAW,
-        "The same on all frames around this one on which the selected part is lost, or hidden already.",
+        "Says that the footage does not show the selected part on this frame and on those around it on which the part is lost, or hidden already.",
     ),
     parameter(
         "nearer",
@@ -209,7 +209,7 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "Move to place",
         EffectKind::Button,
         DRAW,
-        "Puts the selected part at this place in the order of all parts, on all frames.",
+        "Puts the selected part at the number in Place in the order of all parts, on all frames.",
     ),
     parameter(
         "selectedPart",
