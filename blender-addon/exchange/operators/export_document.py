@@ -44,7 +44,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         files.save(path, reading.document)
         reshaped = snapping.reshaped(context.object)
         if reshaped:
-            self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them anew")
+            self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them again")
         found = [counted(len(reading.document["parts"]), "part")] if reading.document["parts"] or not (lines or paint) else []
         found += lines
         found += [f"paint of {counted(paint, 'frame')}"] if paint else []

@@ -27,7 +27,7 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
     bl_label = "Collect Results"
     bl_description = (
         "Take the tracks, snapped and traced lines and paint of a batch into the objects that were sent. What you changed since then stays: there the "
-        "results are left out, and Track, Trace Drawing, Carry Strokes or Fill Drawings makes them anew. Contours on hidden layers are taken too, locked "
+        "results are left out, and Track, Trace Drawing, Carry Strokes or Fill Drawings makes them again. Contours on hidden layers are taken too, locked "
         "layers are not changed"
     )
     bl_options = {"REGISTER", "UNDO"}
