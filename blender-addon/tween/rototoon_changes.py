@@ -30,7 +30,7 @@ class Kept:
         if not count:
             return ""
         them = "it" if count == 1 else "them"
-        return f"{counted(count, 'in-between')} among them: do this again after Update In-betweens draws {them} again"
+        return f"{counted(count, 'in-between')} among them: do this again after Update In-betweens draws {them} anew"
 
 
 @contextmanager

@@ -203,7 +203,7 @@ def test_lines_that_were_fitted_or_cut_after_snapping_follow_the_control_points(
     reports.take()
     assert bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json")) == {"FINISHED"}
     (report,) = reports.take()
-    assert report.kind == "WARNING" and "fitted or cut since, on 5 and 7; Snap to Ink makes them anew" in report.text
+    assert report.kind == "WARNING" and "fitted or cut since, on 5 and 7; Snap to Ink makes them again" in report.text
     bpy.ops.rototoon.snap()
     assert len(document.read(ob, results=True).document["parts"][0]["curves"]) == 9
 
