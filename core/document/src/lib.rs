@@ -10,6 +10,7 @@
 //! - [`load`], [`save`]: documents from and to files
 //! - `direction`: keys that were drawn in the other direction; `unknown`: fields with almost the name of a known one
 //! - [`validate`]: what a document must hold beyond being well-formed
+//! - [`conform`]: a document moved to new footage
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
 //! - [`fills`]: clicks of a painter, and the painted regions of every frame
@@ -50,6 +51,7 @@
 #![forbid(unsafe_code)]
 
 pub mod clips;
+pub mod conform;
 pub mod curves;
 mod direction;
 pub mod drawings;

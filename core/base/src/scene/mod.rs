@@ -1,6 +1,7 @@
 //! The data types that the stages exchange, and the descriptions of parameters.
 //!
 //! - [`clip`]: a character's motion as key points over time
+//! - [`conform`]: where the frames and places of one footage are in another one
 //! - [`correspondence`]: matching of freshly drawn contours to the parts
 //! - [`effects`]: the parameters of the effects for compositing hosts
 //! - [`falloff`]: how soft borders fall off
@@ -19,6 +20,7 @@
 //! - [`template`]: the key points of any body, and its chains
 
 pub mod clip;
+pub mod conform;
 pub mod correspondence;
 pub mod effects;
 pub mod falloff;
