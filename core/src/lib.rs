@@ -12,6 +12,7 @@
 //! | [`fill`] | `rototoon-fill` | colours of regions, carried from painted drawings |
 //! | [`track`] | `rototoon-track` | contours from key frames to every frame |
 //! | [`snap`] | `rototoon-snap` | tracked contours onto the drawn ink |
+//! | [`conform`] | `rototoon-conform` | old footage found again in new footage |
 //! | [`tween`] | `rototoon-tween` | matched strokes, in-betweens, hidden lines |
 //! | [`style`] | `rototoon-style` | a motion re-made in another character's manner |
 //! | [`reshape`] | `rototoon-reshape` | a drawing that follows a skeleton |
@@ -77,6 +78,7 @@
 pub mod pipeline;
 
 pub use rototoon_base::{curve, file, geometry, memory, numeric, scene};
+pub use rototoon_conform as conform;
 pub use rototoon_document as project;
 pub use rototoon_exchange::{export, import};
 pub use rototoon_fill as fill;

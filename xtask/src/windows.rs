@@ -25,6 +25,7 @@ const TESTED: [&str; 18] = [
     "rototoon-batch",
     "rototoon-capi",
     "rototoon-cli",
+    "rototoon-conform",
     "rototoon-document",
     "rototoon-exchange",
     "rototoon-fill",

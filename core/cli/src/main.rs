@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`fill`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
+//! - [`track`], [`snap`], [`trace`], [`fill`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`conform`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
@@ -16,6 +16,7 @@ mod absent;
 mod arguments;
 mod batch;
 mod check;
+mod conform;
 mod export;
 mod failure;
 mod fill;
@@ -43,7 +44,7 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 16] {
+fn subcommands() -> [(Command, Run); 17] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
@@ -54,6 +55,7 @@ fn subcommands() -> [(Command, Run); 16] {
         (absent::command(), absent::run),
         (export::command(), export::run),
         (import::command(), import::run),
+        (conform::command(), conform::run),
         (check::command(), check::run),
         (fit::command(), fit::run),
         (tween::command(), tween::run),

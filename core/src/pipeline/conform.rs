@@ -1,0 +1,151 @@
+//! A document for footage that was delivered again.
+//!
+//! Pictures of both footages are compared (`rototoon-conform`), and the document is moved (`rototoon-document`). If the frames' numbers are all that has changed, or
+//! the old footage is gone, an offset takes the place of the comparison.
+
+use super::{PipelineError, gaps, memory};
+use crate::conform::{ConformError, Given, Plate, compare};
+use crate::geometry::Point;
+use crate::pictures::{Sequence, probe};
+use crate::project::Document;
+use crate::project::conform::Note;
+use crate::scene::conform::{Conform, FrameMap, Placement, Source};
+use crate::scene::{Footage, FrameNumber, FramePattern, Progress};
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+/// Greatest difference of two proportions that are the same, as a share: sizes are whole numbers.
+const SAME_PROPORTIONS: f64 = 0.01;
+
+/// The new footage of a document.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewFootage {
+    /// The path of its files, with one `%d` or `%0Nd`.
+    pub pattern: String,
+    /// The folder from which the pattern starts.
+    pub folder: PathBuf,
+    /// Its frames; `None` takes all files.
+    pub frames: Option<RangeInclusive<FrameNumber>>,
+    /// Its frames a second; `None` takes those of the old footage.
+    pub fps: Option<f64>,
+    /// What is known of the place of the old picture in the new one.
+    pub given: Given,
+    /// What is added to the numbers of frames. Then no picture is compared.
+    pub offset: Option<FrameNumber>,
+}
+
+/// A document for its new footage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Conformed {
+    /// The document. Its footage's pattern starts from the folder of the new footage.
+    pub document: Document,
+    /// Where frames and places went.
+    pub conform: Conform,
+    /// What did not simply go with its drawing.
+    pub notes: Vec<Note>,
+}
+
+/// Moves a document in `folder` to new footage. It runs on the caller's rayon pool, and the result does not depend on the pool.
+///
+/// # Errors
+///
+/// A pattern without files, frames that cannot be read, footages without anything in common, lists that cannot be read, not enough memory, or
+/// [`PipelineError::Cancelled`].
+pub fn conform(
+    document: &Document,
+    folder: &Path,
+    new: &NewFootage,
+    progress: &dyn Progress,
+) -> Result<Conformed, PipelineError> {
+    let old = &document.scene.footage;
+    let footage = footage(new, old)?;
+    let conform = match new.offset {
+        Some(by) => Conform {
+            placement: placement(&new.given, old, &footage),
+            frames: FrameMap::offset(old.first..=old.last, footage.first..=footage.last, by),
+        },
+        None => compared(document, folder, &footage, new, progress)?,
+    };
+    let failed = |error: crate::project::FieldError| PipelineError::Field(error.to_string());
+    let (document, notes) = document.conformed(&conform, footage).map_err(failed)?;
+    Ok(Conformed { document, conform, notes })
+}
+
+/// The new footage: its files say the frames and the size.
+fn footage(new: &NewFootage, old: &Footage) -> Result<Footage, PipelineError> {
+    let pattern = FramePattern::parse(&new.pattern)?;
+    let unlisted = |error| PipelineError::Request(format!("{}: cannot list the files: {error}", new.pattern));
+    let existing = pattern.existing(&new.folder).map_err(unlisted)?;
+    let there = match &new.frames {
+        Some(range) => existing.iter().copied().find(|frame| range.contains(frame)),
+        None => existing.first().copied(),
+    };
+    let first = there.ok_or_else(|| PipelineError::Request(format!("{}: found no file of this name", new.pattern)))?;
+    let path = new.folder.join(pattern.path(first));
+    let unreadable = |error| PipelineError::Request(format!("{}: {error}", path.display()));
+    let (width, height) = probe(&path).map_err(unreadable)?;
+    let all = first..=existing.last().copied().unwrap_or(first);
+    let range = new.frames.clone().unwrap_or(all);
+    let (first, last, fps) = (*range.start(), *range.end(), new.fps.unwrap_or(old.fps));
+    Ok(Footage { pattern: new.pattern.clone(), first, last, fps, width, height, held: old.held })
+}
+
+/// The placement without a look at pictures: as given, or what makes sizes of the same proportions equal.
+fn placement(given: &Given, old: &Footage, new: &Footage) -> Placement {
+    let scales = [new.width as f64 / old.width as f64, new.height as f64 / old.height as f64];
+    let fitting = (scales[0] / scales[1] - 1.0).abs() <= SAME_PROPORTIONS;
+    let scale = given.scale.unwrap_or(if fitting { scales[1] } else { 1.0 });
+    Placement { scale, shift: given.shift.unwrap_or(Point::ZERO) }
+}
+
+fn compared(
+    document: &Document,
+    folder: &Path,
+    footage: &Footage,
+    new: &NewFootage,
+    progress: &dyn Progress,
+) -> Result<Conform, PipelineError> {
+    let (old, sequences) = (&document.scene.footage, [(&document.scene.footage, folder), (footage, &new.folder)]);
+    let mut frames = Vec::new();
+    for (footage, folder) in sequences {
+        memory::to_follow(footage)?;
+        let sequence = Sequence::keeping(footage, folder, 0)?;
+        gaps::none(&sequence, footage.first..=footage.last)?;
+        frames.push(sequence);
+    }
+    let plates = [Plate { footage: old, frames: &frames[0] }, Plate { footage, frames: &frames[1] }];
+    compare(plates[0], plates[1], &new.given, progress).map_err(|error| match error {
+        ConformError::Cancelled(cancelled) => cancelled.into(),
+        ConformError::Frame { source, .. } => source.into(),
+        other => PipelineError::Request(other.to_string()),
+    })
+}
+
+impl Conformed {
+    /// What is told of frames and places, a line each.
+    pub fn told(&self) -> Vec<String> {
+        let Placement { scale, shift } = self.conform.placement;
+        let place = match self.conform.placement.is_same() {
+            true => "the pictures lie on each other".to_owned(),
+            false => format!("the old picture is scaled by {scale:.6} and moved by {:.2}, {:.2} px", shift.x, shift.y),
+        };
+        let sources = self.conform.frames.sources();
+        let of = |kind: fn(&Source) -> bool| -> Vec<FrameNumber> {
+            sources.iter().filter(|(_, source)| kind(source)).map(|(frame, _)| *frame).collect()
+        };
+        let same = of(|source| matches!(source, Source::Same(_)));
+        let mut lines =
+            vec![place, format!("{} of {} frames show a drawing of the old footage", same.len(), sources.len())];
+        let lists = [
+            ("drawn again", of(|source| matches!(source, Source::Redrawn(_)))),
+            ("new", of(|source| *source == Source::New)),
+            ("gone from the old footage", self.conform.frames.removed().collect()),
+        ];
+        let filled = lists.into_iter().filter(|(_, frames)| !frames.is_empty());
+        lines.extend(filled.map(|(what, frames)| format!("{what}: {}", super::report::runs(&frames))));
+        lines
+    }
+}
+
+#[cfg(test)]
+mod tests;
