@@ -7,8 +7,8 @@
 //! The mean over the picture would not see a hand that was drawn anew before a painted background. Directions are kept as bytes, so that a
 //! thousand frames take some 115 MB, and a thousand times a thousand comparisons some seconds.
 //!
-//! On thirteen films, d of the same drawing at another size, through JPEG of quality 50, with grain of σ 6, in another grade, or moved by half a pixel
-//! was at most 0.21. That of drawings beside each other was 1 to 2.5 in the median of all films but those that hold drawings.
+//! The page *Conform* of the manual has d of the same drawing in other sizes, codecs and grades, at most 0.21, and of neighbouring drawings: the least was
+//! 0.5, the median 1.9 to 2.5.
 
 use crate::grid::{Grid, directions};
 use rototoon_base::scene::Raster;

@@ -6,6 +6,7 @@ mod batch_faults;
 mod budgets;
 mod cartoon;
 mod command_line;
+mod conform;
 mod documented;
 mod drawn;
 mod exchange;
