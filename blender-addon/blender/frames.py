@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -16,4 +17,6 @@ def kept(scene: bpy.types.Scene) -> Iterator[None]:
         yield
     finally:
         if (scene.frame_current, scene.frame_subframe) != before:
-            scene.frame_set(before[0], subframe=before[1])
+            # Before frame 0 Blender counts a part of a frame backwards, but takes it forwards only.
+            whole = math.floor(sum(before))
+            scene.frame_set(whole, subframe=sum(before) - whole)

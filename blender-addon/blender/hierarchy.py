@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 
+import bpy
 import numpy as np
 from mathutils import Matrix
 
@@ -16,23 +17,23 @@ from . import camera as cameras
 def carrier(ob, layer) -> tuple[str, str] | None:
     """The carrier of a layer: an object and its bone, or the layer's animated transform. `None` if the layer is still in its
     object."""
-    if _is_animated(ob, layer.name):
+    if is_animated(ob, layer.name):
         return "own", layer.name
     if layer.parent is None:
         return None
     return f"object {layer.parent.name}", layer.parent_bone
 
 
-def _is_animated(ob, name: str) -> bool:
+def is_animated(ob, name: str) -> bool:
     """Whether a layer's own transform is animated."""
     data = ob.data.animation_data
     if data is None:
         return False
+    actions = [data.action, *(strip.action for track in data.nla_tracks for strip in track.strips)]
+    strips = [strip for action in actions if action is not None for layer in action.layers for strip in layer.strips]
     paths = [curve.data_path for curve in data.drivers]
-    if data.action is not None:
-        strips = [strip for layer in data.action.layers for strip in layer.strips]
-        paths += [curve.data_path for strip in strips for bag in strip.channelbags for curve in bag.fcurves]
-    pattern = re.compile(re.escape(f'layers["{name}"].') + "(translation|rotation|scale)$")
+    paths += [curve.data_path for strip in strips for bag in strip.channelbags for curve in bag.fcurves]
+    pattern = re.compile(re.escape(f'layers["{bpy.utils.escape_identifier(name)}"].') + "(translation|rotation|scale)$")
     return any(pattern.search(path) for path in paths)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from . import camera as cameras
 from . import footage
 from . import grease_pencil as gp
+from . import hierarchy
 from .errors import Problem
 from .frames import kept
 
@@ -29,7 +30,7 @@ class Mapper:
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
         self._points = points
         layers = [gp.find_layer(ob, name) for name in names]
-        self._moves = _moves(ob, layers)
+        self._moves = moves(ob, layers)
         if not self._moves:
             self._add(ob, layers, None)
             return
@@ -118,12 +119,25 @@ def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:
         return False
 
 
-def _moves(ob: bpy.types.Object, layers) -> bool:
-    """Whether the object, a layer's parent, or the camera or reference image can move."""
-    settings = ob.rototoon
-    objects = [ob, settings.reference if settings.plane == "REFERENCE" else camera_of(ob)]
-    objects += [layer.parent for layer in layers if layer is not None]
-    return any(is_animated(each) for each in objects)
+def moves(ob: bpy.types.Object, layers) -> bool:
+    """Whether the object, a layer or its parent, or the camera or reference image can move, or the scene goes to another camera.
+
+    A layer that does not exist yet is `None`.
+    """
+    settings, scene = ob.rototoon, bpy.context.scene
+    there = [layer for layer in layers if layer is not None]
+    through_camera = settings.plane != "REFERENCE"
+    shows = camera_of(ob) if through_camera else settings.reference
+    if any(is_animated(each) for each in (ob, shows, *(layer.parent for layer in there))):
+        return True
+    if any(hierarchy.is_animated(ob, layer.name) for layer in there):
+        return True
+    return through_camera and (settings.camera is None or not settings.width) and _changes_camera(scene)
+
+
+def _changes_camera(scene: bpy.types.Scene) -> bool:
+    """Whether markers on the timeline give the scene another camera on some frames."""
+    return any(marker.camera not in (None, scene.camera) for marker in scene.timeline_markers)
 
 
 def is_animated(ob: bpy.types.Object | None) -> bool:

@@ -57,9 +57,7 @@ def is_output(layer) -> bool:
 
 def frames_between(ob, first: int, last: int) -> list[int]:
     """The frames of a range on which something can change: the frames of all drawings, or all frames if the view moves."""
-    shows = placement.camera_of(ob)
-    movers = [ob, shows, *(layer.parent for layer in gp.every_layer(ob))]
-    if any(placement.is_animated(each) for each in movers):
+    if placement.moves(ob, gp.every_layer(ob)):
         return list(range(first, last + 1))
     numbers = {number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer)}
     return sorted({first, *(number for number in numbers if first < number <= last)})

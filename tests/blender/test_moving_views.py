@@ -1,0 +1,118 @@
+"""What moves under a drawing without a keyframe on its object: a layer with an animated transform, and a scene whose markers change its camera."""
+
+import bpy
+import numpy as np
+import pytest
+import shots
+from mathutils import Matrix
+
+HALF = 0.5
+"""Scene units: 8 pixels, since 160 pixels are 10 units."""
+
+
+def slide(ob):
+    """Moves the contours' layer by half a unit from frame 1 to frame 9."""
+    layer = shots.layer_of(ob)
+    for frame, along in ((1, 0.0), (9, HALF)):
+        layer.translation = (along, 0, 0)
+        layer.keyframe_insert("translation", frame=frame)
+    bpy.context.scene.frame_set(1)
+
+
+def to_strip(ob):
+    """Puts the animation of an object's drawings into a strip."""
+    own = ob.data.animation_data
+    strip = own.nla_tracks.new().strips.new("slide", 1, own.action)
+    if hasattr(strip, "action_slot"):
+        strip.action_slot = own.action_slot
+    own.action = None
+    bpy.context.scene.frame_set(1)
+
+
+def other_camera(scene):
+    """A second camera half a unit to the right, which the scene gets on frame 5."""
+    first = scene.camera
+    second = first.copy()
+    scene.collection.objects.link(second)
+    second.matrix_world = Matrix.Translation((HALF, 0, 0)) @ first.matrix_world
+    for frame, camera in ((1, first), (5, second)):
+        scene.timeline_markers.new(camera.name, frame=frame).camera = camera
+    scene.frame_set(1)
+    return second
+
+
+def drawn_on(addon, ob, frame):
+    """The pixels of the square on a frame, by a look at that frame alone."""
+    bpy.context.scene.frame_set(frame)
+    return shots.pixels(addon, ob, frame)[0][1]
+
+
+@pytest.mark.parametrize("strip", [False, True])
+def test_keys_on_a_layer_that_moves_by_itself(addon, tmp_path, strip):
+    ob = shots.set_up(tmp_path)
+    slide(ob)
+    if strip:
+        to_strip(ob)
+    scripting = addon("scripting")
+    scripting.set_key(ob, 1, {"square": shots.square(0)})
+    scripting.set_key(ob, 9, {"square": shots.square(8)})
+    assert drawn_on(addon, ob, 9) == pytest.approx(shots.square(8), abs=2e-3)
+    assert drawn_on(addon, ob, 1) == pytest.approx(shots.square(0), abs=2e-3)
+
+
+def test_a_layer_whose_name_has_quotes(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    shots.layer_of(ob).name = ob.rototoon.contours_layer = 'My "lines"'
+    slide(ob)
+    assert not addon("blender.placement").Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still
+
+
+def test_other_animation_of_drawings_does_not_move_them(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    shots.layer_of(ob).keyframe_insert("opacity", frame=1)
+    assert addon("blender.placement").Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still
+
+
+def test_keys_where_markers_change_the_camera(addon, tmp_path):
+    ob, scene = shots.set_up(tmp_path), bpy.context.scene
+    ob.rototoon.camera = None
+    first, second = scene.camera, other_camera(scene)
+    scripting = addon("scripting")
+    scripting.set_key(ob, 1, {"square": shots.square(0)})
+    scripting.set_key(ob, 9, {"square": shots.square(8)})
+    assert drawn_on(addon, ob, 9) == pytest.approx(shots.square(8), abs=2e-3) and scene.camera == second
+    assert drawn_on(addon, ob, 1) == pytest.approx(shots.square(0), abs=2e-3) and scene.camera == first
+
+
+def test_the_footages_own_camera_stays_whatever_the_markers_say(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    assert ob.rototoon.camera is not None
+    other_camera(bpy.context.scene)
+    assert addon("blender.placement").Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still
+
+
+def test_hidden_lines_look_at_every_frame_where_the_view_moves(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    shots.draw(addon, ob, 1, [shots.square(0)])
+    frames_between = addon("strokes.hidden").frames_between
+    assert frames_between(ob, 1, 9) == [1]
+    slide(ob)
+    assert frames_between(ob, 1, 9) == list(range(1, 10))
+
+
+def test_hidden_lines_look_at_every_frame_where_a_reference_image_moves(addon, tmp_path):
+    ob = shots.set_up(tmp_path, plane="REFERENCE")
+    shots.draw(addon, ob, 1, [shots.square(0)])
+    ob.rototoon.reference.keyframe_insert("location", frame=1)
+    assert addon("strokes.hidden").frames_between(ob, 1, 9) == list(range(1, 10))
+
+
+@pytest.mark.parametrize(("frame", "share"), [(3, 0.25), (-2, 0.5), (-7, 0.75), (0, 0.0)])
+def test_the_scene_comes_back_to_a_moment_between_two_frames(addon, frame, share):
+    scene = bpy.context.scene
+    scene.frame_set(frame, subframe=share)
+    moment = scene.frame_current, scene.frame_subframe
+    with addon("blender.frames").kept(scene):
+        scene.frame_set(10)
+    assert (scene.frame_current, scene.frame_subframe) == moment
+    assert scene.frame_current_final == pytest.approx(frame + share)
