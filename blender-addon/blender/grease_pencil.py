@@ -166,9 +166,14 @@ def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
     black."""
     found = ob.data.layers.get(name)
     if found is None:
-        found = ob.data.layers.new(name)
+        found = new_layer(ob, name)
         found.use_lights = False
     return found
+
+
+def new_layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:
+    """A new layer. The active layer stays active, if there is one."""
+    return ob.data.layers.new(name, set_active=ob.data.layers.active is None)
 
 
 def remove_layer(ob: bpy.types.Object, layer: bpy.types.bpy_struct) -> None:

@@ -112,6 +112,16 @@ def need_open(layers: Iterable[bpy.types.bpy_struct | None], hidden: bool = Fals
         raise Problem(f"{said}: {'unlock' if 'locked' in said else 'show'} it first")
 
 
+def need_named(ob: bpy.types.Object, names: Iterable[str], hidden: bool = False) -> None:
+    """As `need_open`, for layers by name. One that does not exist yet must not have the name of a group: Blender would call it otherwise,
+    and it would not be found again."""
+    found = {name: ob.data.layers.get(name) for name in names}
+    need_open(found.values(), hidden)
+    for name, layer in found.items():
+        if layer is None and ob.data.layer_groups.get(name) is not None:
+            raise Problem(f'A layer group of "{ob.name}" is called "{name}", so no layer can be: give the group another name')
+
+
 def need_some(layers: Iterable[bpy.types.bpy_struct], hidden: bool = False) -> None:
     """As `need_open`, if none of the layers may be written."""
     layers = list(layers)

@@ -12,6 +12,7 @@ import numpy as np
 from mathutils import Matrix
 
 from . import camera as cameras
+from . import grease_pencil as gp
 
 
 def carrier(ob, layer) -> tuple[str, str] | None:
@@ -58,7 +59,7 @@ def beside(ob, layer, name: str):
     found = ob.data.layers.get(name)
     if found is not None:
         return found
-    found = ob.data.layers.new(name)
+    found = gp.new_layer(ob, name)
     found.use_lights = layer.use_lights
     if layer.parent is None:
         found.translation, found.rotation, found.scale = layer.translation, layer.rotation, layer.scale

@@ -157,12 +157,9 @@ def ranges(starts: np.ndarray, sizes: np.ndarray) -> np.ndarray:
 
 
 def bottom_layer(ob, name: str):
-    """Makes a layer below all others. The active layer stays active, unless the new one is the first."""
-    active = gp.active_layer(ob)
+    """Makes a layer below all others."""
     made = gp.layer(ob, name)
     ob.data.layers.move_bottom(made)
-    if active is not None:
-        gp.activate(ob, active)
     return made
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..lines import given, tracing
 from . import spacings, stroke_fields
@@ -118,7 +117,7 @@ def need_open(ob, project: dict[str, Any]) -> None:
     """Raises a `Problem` if the document has drawings and the layer for them may not be written."""
     film = checked(project)
     if film.keys or film.traced or film.between:
-        guard.need_open([gp.find_layer(ob, ob.rototoon.lines_layer)])
+        guard.need_named(ob, [ob.rototoon.lines_layer])
 
 
 def draw(ob, project: dict[str, Any]) -> given.Done:

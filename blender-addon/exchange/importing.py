@@ -45,6 +45,7 @@ def need_open(ob) -> None:
     guard.need(ob)
     settings = ob.rototoon
     guard.need_open(gp.layers(ob, settings.contours_layer) + gp.layers(ob, settings.snapped_layer), hidden=True)
+    guard.need_named(ob, [settings.contours_layer, settings.snapped_layer], hidden=True)
 
 
 def _empty(ob) -> None:

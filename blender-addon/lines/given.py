@@ -63,7 +63,7 @@ class Done:
 
 def draw(ob, name: str, film: Film) -> Done:
     """Draws a film on the layer `name`, in the place of all generated drawings there."""
-    guard.need_open([gp.find_layer(ob, name)])
+    guard.need_named(ob, [name])
     target = gp.layer(ob, name)
     own = _cleared(ob, name, target)
     keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}

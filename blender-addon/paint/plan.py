@@ -56,7 +56,7 @@ def layer_name(ob) -> str:
     name = ob.rototoon.fills_layer
     if name in taken_names(ob):
         raise Problem(f'The layer "{name}" is for lines or contours: give paint a layer of its own, in the panel Paint')
-    guard.need_open([gp.find_layer(ob, name)])
+    guard.need_named(ob, [name])
     return name
 
 

@@ -64,7 +64,7 @@ def set_key(
 
 def _need_places(ob: bpy.types.Object, name: str, places: set[str]) -> None:
     """Raises a `Problem` if one of the layers may not be written, or `name` is no contour layer."""
-    guard.need_open((gp.find_layer(ob, place) for place in sorted(places | {name})), hidden=True)
+    guard.need_named(ob, sorted(places | {name}), hidden=True)
     prefix = ob.rototoon.contours_layer
     if name != prefix and not name.startswith((f"{prefix}.", f"{prefix} ")):
         raise Problem(f'The layer "{name}" is not a contour layer: its name must begin with "{prefix}"')

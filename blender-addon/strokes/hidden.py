@@ -15,7 +15,7 @@ import numpy as np
 from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
-from ..blender import hierarchy, placement
+from ..blender import guard, hierarchy, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
 
@@ -98,7 +98,7 @@ class _Scene:
         strokes = points = 0
         for depth, layer in enumerate(gp.every_layer(ob)):
             number = st.shown_frame(layer, frame)
-            if layer.hide or is_output(layer) or number is None:
+            if guard.is_hidden(layer) or is_output(layer) or number is None:
                 continue
             content = st.read(gp.drawings(layer)[number][0])
             fine = content.finite() & (_forms(content) >= 0)

@@ -37,7 +37,7 @@ def marked(ob, frame: int) -> list[Marked]:
     for layer in st.drawn_layers(ob, active=False):
         drawings = gp.drawings(layer)
         at = max((number for number in drawings if number <= frame), default=None)
-        if layer.hide or at is None:
+        if guard.is_hidden(layer) or at is None:
             continue
         handle, kind = drawings[at]
         if kind != gp.GENERATED or not (gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)):

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..blender import camera
+from ..blender import camera, guard
 from ..blender import grease_pencil as gp
 from ..capture import doubt
 from . import doubts
@@ -64,7 +64,7 @@ def _tracked(ob, frame: int) -> Iterator[Tracked]:
     """The tracked contours of an object on a frame, by layer."""
     for layer in gp.layers(ob, ob.rototoon.contours_layer):
         found = gp.drawings(layer).get(frame)
-        if layer.hide or found is None:
+        if guard.is_hidden(layer) or found is None:
             continue
         handle, kind = found
         starts = gp.offsets(handle)

@@ -37,8 +37,7 @@ class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
     def run(self, context) -> str:
         ob, frame = context.object, context.scene.frame_current
         settings = ob.rototoon
-        target = gp.find_layer(ob, settings.contours_layer)
-        guard.need_open([target], hidden=True)
+        guard.need_named(ob, [settings.contours_layer], hidden=True)
         found = _strokes(ob, frame, self._wanted())
         if not found:
             raise Problem("No strokes are selected: select the strokes around the part in Edit Mode, then press Make Part")

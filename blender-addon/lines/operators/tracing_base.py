@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import bpy
 
-from ...blender import grease_pencil as gp
 from ...blender import guard, preferences
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, listed
@@ -96,7 +95,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
 
 def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
     """The plan for some layers and scene frames. Reads the layers, and changes nothing."""
-    guard.need_open([gp.find_layer(ob, name) for name in names])
+    guard.need_named(ob, names)
     wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
     return pl.make(ob, dr.read(ob, names, wanted), first, last, new)
 

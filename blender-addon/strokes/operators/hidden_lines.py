@@ -61,7 +61,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         self._frames = [scene.frame_current]
         if self.frames == "RANGE":
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
-        if not any(not layer.hide and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
+        if not any(not guard.is_hidden(layer) and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
             raise Problem("No drawings are visible: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
@@ -74,7 +74,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         """Raises a `Problem` if a layer that gets hidden lines may not be written."""
         if self.action == "MOVE":
             layers = st.editable_layers(self._ob, active=False)
-            guard.need_open(gp.find_layer(self._ob, layer.name + hidden.SUFFIX) for layer in layers)
+            guard.need_named(self._ob, [layer.name + hidden.SUFFIX for layer in layers])
 
     def _steps(self, scene):
         choices = hidden.Choices(closed=self.covers == "CLOSED", by_stroke=self.order == "STROKES")
