@@ -6,6 +6,7 @@ keeps them elsewhere, and they stay with the same point indices.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -224,18 +225,29 @@ def _shows_fill(material) -> bool:
 
 
 def line_material(ob, index: int) -> int:
-    """Index of the material that draws only the line of material `index`, without its fill. It is made if it does not exist."""
+    """Index of the material that draws only the line of material `index`, without its fill. It is made if it does not exist.
+
+    A material of that name which has a fill is the artist's, and stays as it is.
+    """
     materials = ob.data.materials
     material = materials[min(index, len(materials) - 1)]
     name = f"{material.name} Line"
     for place, other in enumerate(materials):
-        if other is not None and other.name == name:
+        if other is not None and _is_line_of(other, name):
             return place
-    copy = bpy.data.materials.get((name, None)) or material.copy()
-    copy.name = name
-    copy.grease_pencil.show_fill = False
-    materials.append(copy)
+    made = next((other for other in bpy.data.materials if other.library is None and _is_line_of(other, name)), None)
+    if made is None:
+        made = material.copy()
+        made.name = name
+        made.grease_pencil.show_fill = False
+    materials.append(made)
     return len(materials) - 1
+
+
+def _is_line_of(material, name: str) -> bool:
+    """Whether a material has no fill and has a name, maybe with the number that Blender gives where a name is taken."""
+    plain = material.grease_pencil is not None and not material.grease_pencil.show_fill
+    return plain and re.fullmatch(re.escape(name) + r"(\.\d{3,})?", material.name) is not None
 
 
 def unique_numbers(used: Iterable[int], count: int) -> np.ndarray:
