@@ -207,18 +207,24 @@ def every_layer(ob: bpy.types.Object) -> list[bpy.types.bpy_struct]:
 
 
 def frame_numbers(layer: bpy.types.bpy_struct, selected: bool = False) -> list[int]:
-    """Frame numbers of a layer in time order; with `selected`, only those of selected frames."""
-    return [frame.frame_number for frame in layer.frames if frame.select or not selected]
+    """Frame numbers of a layer's drawings in time order; with `selected`, only those of selected frames."""
+    return [frame.frame_number for frame in layer.frames if (frame.select or not selected) and frame.drawing is not None]
+
+
+def ends(layer: bpy.types.bpy_struct) -> list[int]:
+    """The frames on which a drawing ends by itself. Blender has them where a drawing was made with a duration, and they have no drawing."""
+    return [frame.frame_number for frame in layer.frames if frame.drawing is None]
 
 
 def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struct, str]]:
     """Drawing and keyframe type by frame number, in time order."""
-    return {frame.frame_number: (frame.drawing, frame.keyframe_type) for frame in layer.frames}
+    found = ((frame, frame.drawing) for frame in layer.frames)
+    return {frame.frame_number: (drawing, frame.keyframe_type) for frame, drawing in found if drawing is not None}
 
 
 def has_strokes(layer: bpy.types.bpy_struct) -> bool:
     """Whether any drawing of a layer has strokes. No array is read."""
-    positions_of = (frame.drawing.attributes.get("position") for frame in layer.frames)
+    positions_of = (drawing.attributes.get("position") for drawing, _ in drawings(layer).values())
     return any(found is not None and len(found.data) for found in positions_of)
 
 
@@ -257,11 +263,27 @@ def set_keyframe_type(layer: bpy.types.bpy_struct, types: Mapping[int, str]) -> 
 
 
 def make_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int], kind: str) -> None:
-    """Makes empty frames of a keyframe type on the numbers that have no frame."""
-    have = {frame.frame_number for frame in layer.frames}
+    """Makes empty frames of a keyframe type on the numbers that have no frame. The others get drawings of their own, to be written."""
+    numbers, have = list(numbers), {frame.frame_number for frame in layer.frames}
+    make_own(layer, have.intersection(numbers))
     for number in numbers:
         if number not in have:
             layer.frames.new(number).keyframe_type = kind
+
+
+def make_own(layer: bpy.types.bpy_struct, numbers: Iterable[int]) -> None:
+    """Gives frames a drawing of their own that share one with other frames. What is written there would show on the others too."""
+    wanted = set(numbers)
+    for number in [frame.frame_number for frame in layer.frames if frame.frame_number in wanted and _is_shared(frame.drawing)]:
+        if _is_shared(drawings(layer)[number][0]):
+            aside = min(frame.frame_number for frame in layer.frames) - 1
+            layer.frames.copy(number, aside)
+            layer.frames.remove(number)
+            layer.frames.move(aside, number)
+
+
+def _is_shared(drawing: bpy.types.bpy_struct | None) -> bool:
+    return drawing is not None and drawing.user_count > 1
 
 
 def remove_frames(layer: bpy.types.bpy_struct, numbers: Iterable[int]) -> None:
@@ -458,26 +480,6 @@ def _write_tail(drawing: bpy.types.bpy_struct, rows: Rows) -> None:
 def remove_strokes(drawing: bpy.types.bpy_struct, indices: list[int]) -> None:
     """Removes strokes."""
     drawing.remove_strokes(indices=indices)
-
-
-def copy_strokes(source: bpy.types.bpy_struct, indices: list[int], target: bpy.types.bpy_struct) -> None:
-    """Adds the strokes `indices` of a drawing to another drawing, with all attributes that can be copied."""
-    starts = offsets(source)
-    sizes = np.diff(starts)[indices]
-    points = np.concatenate([np.arange(starts[i], starts[i + 1]) for i in indices])
-    rows = Rows(sizes)
-    for attribute in list(source.attributes):
-        name = attribute.name
-        if name.startswith(".") or name == "curve_type" or attribute.data_type not in _LAYOUT:
-            continue
-        total = int(starts[-1]) if attribute.domain == "POINT" else len(starts) - 1
-        values = get(source, name, total)
-        if values is None:
-            continue
-        if name != "position" and target.attributes.get(name) is None:
-            make(target, name, attribute.data_type, attribute.domain)
-        rows.values[name] = values[points if attribute.domain == "POINT" else indices]
-    append(target, rows)
 
 
 def new_object(name: str, collection: bpy.types.Collection) -> bpy.types.Object:

@@ -7,6 +7,8 @@
   they would be gone when the file is opened again.
 - **Drawings that several objects share are not written.** The contours of one object would replace those of another, which sees
   them through another camera or has other parts.
+- **Drawings are not written where one of the object ends by itself**, as after *Insert Blank Keyframe* with a duration. When any frame is removed,
+  Blender 5.2 puts the first drawing of the object in the place of such an end, and there it stays.
 
 Each refusal names the object or layer, says why, and says what to do. An operator for one layer refuses it (`need_open`). An operator
 for many layers leaves out those that are closed, and says which (`left_out`).
@@ -20,6 +22,7 @@ from collections.abc import Iterable
 
 import bpy
 
+from . import grease_pencil as gp
 from .errors import Problem
 
 DRAWINGS, SETTINGS, ANIMATION, NOTHING = "drawings", "settings", "animation", "nothing"
@@ -46,10 +49,22 @@ def refusal(ob: bpy.types.Object, what: str = DRAWINGS) -> str:
 
 
 def need(ob: bpy.types.Object, what: str = DRAWINGS) -> None:
-    """Raises a `Problem` if `what` of an object cannot be changed."""
-    why = refusal(ob, what)
+    """Raises a `Problem` if `what` of an object cannot be changed. It looks at all frames, which `refusal` has no time for."""
+    why = refusal(ob, what) or (_fixed_end(ob) if what == DRAWINGS else "")
     if why:
         raise Problem(why)
+
+
+def _fixed_end(ob: bpy.types.Object) -> str:
+    """Which drawing of an object ends by itself; empty if none does."""
+    for layer in ob.data.layers if gp.is_drawing(ob) else ():
+        ends = gp.ends(layer)
+        if ends:
+            return (
+                f'On the layer "{layer.name}" a drawing ends by itself before frame {ends[0]}, and Blender would lose the end: go to frame {ends[0]}, '
+                "make the layer active, and press Shift I in Draw Mode (Insert Blank Keyframe)"
+            )
+    return ""
 
 
 def need_own(block: bpy.types.ID) -> None:

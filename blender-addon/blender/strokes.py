@@ -109,7 +109,7 @@ def write(drawing, content: Content) -> None:
     elif count < have:
         drawing.remove_strokes(indices=list(range(count, have)))
     if count:
-        _set_types(drawing, content.types)
+        set_types(drawing, content.types)
         sizes = np.diff(gp.offsets(drawing))
         if not np.array_equal(sizes, content.sizes):
             drawing.resize_strokes(sizes=content.sizes.tolist(), indices=list(range(count)))
@@ -121,13 +121,29 @@ def write(drawing, content: Content) -> None:
     drawing.tag_positions_changed()
 
 
-def _set_types(drawing, types: np.ndarray) -> None:
+def set_types(drawing, types: np.ndarray) -> None:
+    """Sets the curve type of each stroke."""
     now = gp.get(drawing, "curve_type", len(types))
     now = np.zeros(len(types), np.int8) if now is None else now
     for kind in np.unique(types):
         other = np.flatnonzero((types == kind) & (now != kind))
         if len(other):
             drawing.set_types(type=_TYPE_NAMES[kind], indices=other.tolist())
+
+
+def add(drawing, content: Content) -> None:
+    """Adds strokes to a drawing after its own, with everything that is known of them."""
+    write(drawing, joined(read(drawing), content))
+
+
+def chosen(content: Content, which: Iterable[int] | np.ndarray) -> Content:
+    """The strokes with some indices, in that order."""
+    which = np.asarray(which if isinstance(which, np.ndarray) else list(which), int)
+    points = ranges(content.starts[:-1][which], content.sizes[which])
+    made = Content(content.sizes[which], content.types[which], kinds=dict(content.kinds))
+    made.point = {name: values[points] for name, values in content.point.items()}
+    made.curve = {name: values[which] for name, values in content.curve.items()}
+    return made
 
 
 def joined(one: Content, other: Content) -> Content:
@@ -166,8 +182,8 @@ def bottom_layer(ob, name: str):
 
 def shown_frame(layer, frame: int) -> int | None:
     """The frame of the drawing that a layer shows on `frame`; `None` if it shows none."""
-    numbers = [each.frame_number for each in layer.frames if each.frame_number <= frame]
-    return max(numbers, default=None)
+    number = max((each.frame_number for each in layer.frames if each.frame_number <= frame), default=None)
+    return None if number in gp.ends(layer) else number
 
 
 def editable_layers(ob, active: bool) -> list:

@@ -96,6 +96,7 @@ def look(ob: bpy.types.Object) -> bool:
     if guard.refusal(ob) or not _is_certain(ob, found) or any(guard.is_locked(layer) for layer in layers):
         return False
     try:
+        guard.need(ob)
         reading = contours.read(ob)
         mapper = document.mapper_of(ob, reading)
         decisions = identity.decide(reading, mapper, ob.rototoon.next_number)

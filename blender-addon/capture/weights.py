@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import strokes as st
 
 Contours = tuple[tuple[int, int], ...]
 """The part's number and the number of points of each stroke of a drawing."""
@@ -39,7 +40,10 @@ class Keys:
         gp.remove_frames(layer, [frame])
         gp.copy_frame(layer, min(found, key=lambda key: abs(key - frame)), frame)
         gp.set_keyframe_type(layer, {frame: gp.GENERATED})
-        gp.put(gp.drawings(layer)[frame][0], gp.MADE, np.ones(len(rows.sizes), bool))
+        handle = gp.drawings(layer)[frame][0]
+        # Handles and knots of the key would not fit the points that are tracked.
+        st.set_types(handle, np.full(len(rows.sizes), st.POLY, np.int8))
+        gp.put(handle, gp.MADE, np.ones(len(rows.sizes), bool))
 
 
 def _contours(numbers: np.ndarray, sizes: np.ndarray) -> Contours:

@@ -129,6 +129,11 @@ class Reporting:
         if text:
             self._warnings += (text,)
 
+    def ready(self, context) -> None:
+        """Raises a `Problem` if drawings cannot be written, for a reason that takes too long to look for whenever a button is drawn."""
+        if isinstance(self, OnDrawing) and self.changes == guard.DRAWINGS:
+            guard.need(context.object)
+
     def attempt(self, do: Callable[[], set[str]]) -> set[str]:
         """Calls `do` and returns its result. A `Problem` or `RototoonError` becomes an error report."""
         try:
@@ -159,7 +164,11 @@ class Guarded(Reporting):
 
     def execute(self, context):
         """Called by Blender."""
-        return self.attempt(lambda: self.done(self.run(context)))
+        return self.attempt(lambda: self._run(context))
+
+    def _run(self, context) -> set[str]:
+        self.ready(context)
+        return self.done(self.run(context))
 
 
 class Long(Reporting):
@@ -191,6 +200,7 @@ class Long(Reporting):
         return self._follow(context)
 
     def _work_and_wait(self, context):
+        self.ready(context)
         self._work = self.begin(context)
         self._work.start()
         self._wait(context)
@@ -202,6 +212,7 @@ class Long(Reporting):
         return self.attempt(lambda: self._work_and_follow(context))
 
     def _work_and_follow(self, context):
+        self.ready(context)
         self._work = self.begin(context)
         self._work.start()
         self._timer = context.window_manager.event_timer_add(0.05, window=context.window)

@@ -226,7 +226,7 @@ def _looked(edit: Edit, content: st.Content) -> list[tuple[int, st.Content]]:
     for i in edit.edited:
         own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
         for place in np.flatnonzero(np.isin(tracks, sorted(own)) & (content.sizes > 0)):
-            made[int(place)] = part(content, np.arange(len(tracks)) == place)
+            made[int(place)] = st.chosen(content, [place])
             _look_like(made[int(place)], edit.content, i)
     return sorted(made.items(), key=lambda each: each[0])
 
@@ -322,32 +322,12 @@ def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.C
     stay = np.flatnonzero(~gone)
     places = [(float(i), 0, k) for k, i in enumerate(stay)]
     places += [(float(place), 1 + k, len(stay) + k) for k, (place, _) in enumerate(made)]
-    whole = part(content, ~gone)
+    whole = st.chosen(content, stay)
     for _, each in made:
         whole = st.joined(whole, each)
     if not made:
         return whole
-    result = reordered(whole, np.array([k for *_, k in sorted(places)]))
+    result = st.chosen(whole, np.array([k for *_, k in sorted(places)]))
     new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
     dr.mark(result, new)
     return result
-
-
-def part(content: st.Content, wanted: np.ndarray) -> st.Content:
-    """Only the wanted strokes."""
-    of_points = np.repeat(wanted, content.sizes)
-    made = st.Content(content.sizes[wanted], content.types[wanted])
-    made.kinds = dict(content.kinds)
-    made.point = {name: values[of_points] for name, values in content.point.items()}
-    made.curve = {name: values[wanted] for name, values in content.curve.items()}
-    return made
-
-
-def reordered(content: st.Content, order: np.ndarray) -> st.Content:
-    """The strokes in another order."""
-    rows = st.ranges(content.starts[:-1][order], content.sizes[order])
-    made = st.Content(content.sizes[order], content.types[order])
-    made.kinds = dict(content.kinds)
-    made.point = {name: values[rows] for name, values in content.point.items()}
-    made.curve = {name: values[order] for name, values in content.curve.items()}
-    return made

@@ -177,6 +177,7 @@ def _keyed(group: pl.Group, traced: Traced, offset: int, counter, home: str) -> 
 def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: records.Layer, done: Done) -> None:
     """Gives the strokes of the artist's drawings their numbers, and makes changed traced drawings the artist's."""
     target = gp.find_layer(ob, layer.name)
+    gp.make_own(target, layer.keys.keys() & group.seeds.keys())
     handles = gp.drawings(target)
     for frame, seed in group.seeds.items():
         if frame not in layer.keys:

@@ -111,7 +111,7 @@ def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own
     target = _at(regions, new.at)
     again = [click for click in own if _is_buckets(sheet.content, click.stroke) and _at(regions, click.at) not in (None, target)]
     stale = {click.stroke for click in again} | _within(ob, sheet, mapping, target)
-    rest = sheets.chosen(sheet.content, [i for i in range(len(sheet.made)) if i not in stale])
+    rest = st.chosen(sheet.content, [i for i in range(len(sheet.made)) if i not in stale])
     asked = [*again, new]
     palette = painted.Palette()
     for click in own:

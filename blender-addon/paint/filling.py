@@ -182,7 +182,7 @@ def _write(ob, handle, plan: pl.Plan, frame: int, regions: list[painted.Region],
     if sheet is None or not len(sheet.own):
         gp.replace_made(handle, painted.rows(ob, regions, mapping, plan.palette))
         return
-    own = sheets.chosen(sheet.content, sheet.own)
+    own = st.chosen(sheet.content, sheet.own)
     shapes_ = sheets.shapes_of(ob, own, mapping, range(len(own.sizes)))
     _mark(own, sheet, regions, plan.clicks.get(frame, []))
     new = [region for region in regions if not region.covered(shapes_)]

@@ -42,7 +42,7 @@ class Sheet:
 
     def sum(self) -> int:
         """Checksum of the artist's strokes."""
-        own = chosen(self.content, self.own)
+        own = st.chosen(self.content, self.own)
         looks = dr.look_sums(own) if len(own.sizes) else np.zeros(0, np.int32)
         return records.checksum(own.point["position"], looks, own.sizes) if len(own.sizes) else 0
 
@@ -72,16 +72,6 @@ def _made(content: st.Content) -> np.ndarray:
     same = (changed[starts[1:]] == changed[starts[:-1]]) & content.strokes("cyclic")
     # A stroke that lost points has another sum: that of its look counts its points.
     return made & same & (dr.look_sums(content) == content.strokes(gp.LOOK))
-
-
-def chosen(content: st.Content, which: Iterable[int]) -> st.Content:
-    """Some strokes of a drawing."""
-    which = np.asarray(list(which), int)
-    points = st.ranges(content.starts[:-1][which], content.sizes[which])
-    part = st.Content(content.sizes[which], content.types[which], kinds=dict(content.kinds))
-    part.point = {name: values[points] for name, values in content.point.items()}
-    part.curve = {name: values[which] for name, values in content.curve.items()}
-    return part
 
 
 @dataclass

@@ -38,3 +38,5 @@ def need(ob: Any, kind: type[OnDrawing], changes: str = guard.DRAWINGS) -> None:
         why = f'"{ob.name}" is not in the scene "{bpy.context.scene.name}": make its scene the current one'
     if why:
         raise Problem(why)
+    if gp.is_drawing(ob):
+        guard.need(ob, changes)

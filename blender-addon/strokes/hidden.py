@@ -337,10 +337,8 @@ def _put_aside(layer, number: int, hidden: st.Content) -> None:
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:
     """Writes a drawing on a frame. A new frame is a generated one. It begins as a copy of `source`, for what is not written."""
-    if number not in gp.drawings(layer):
-        if source is None:
-            gp.make_frames(layer, [number], gp.GENERATED)
-        else:
-            gp.copy_frame(layer, source, number)
-            gp.set_keyframe_type(layer, {number: gp.GENERATED})
+    if number not in gp.drawings(layer) and source is not None:
+        gp.copy_frame(layer, source, number)
+        gp.set_keyframe_type(layer, {number: gp.GENERATED})
+    gp.make_frames(layer, [number], gp.GENERATED)
     st.write(gp.drawings(layer)[number][0], content)

@@ -269,6 +269,7 @@ def number_keys(ob, name: str, plan: Plan, pairs: dict[int, list[tuple[int, int]
     """Numbers the strokes of all keys, and of in-betweens whose keys get other numbers. Returns the keys' numbers by frame."""
     layer = gp.find_layer(ob, name)
     record, found = plan.records[name], plan.frames[name]
+    gp.make_own(layer, found.keys)
     drawings = gp.drawings(layer)
     handles = [drawings[frame][0] for frame in found.keys]
     known = [gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1) for handle in handles]

@@ -35,11 +35,10 @@ def marked(ob, frame: int) -> list[Marked]:
     """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not."""
     settings, found = ob.rototoon, []
     for layer in st.drawn_layers(ob, active=False):
-        drawings = gp.drawings(layer)
-        at = max((number for number in drawings if number <= frame), default=None)
+        at = st.shown_frame(layer, frame)
         if guard.is_hidden(layer) or at is None:
             continue
-        handle, kind = drawings[at]
+        handle, kind = gp.drawings(layer)[at]
         if kind != gp.GENERATED or not (gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)):
             continue
         here = settings.doubt_layer == layer.name and settings.doubt_frame == at

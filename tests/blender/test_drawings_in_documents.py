@@ -80,9 +80,9 @@ def test_the_messages_count_what_went_out_and_came_in(addon, traced, tmp_path):
 
 
 def test_strokes_without_a_number_and_copies_get_numbers_in_the_document(addon, traced, tmp_path):
-    gp = addon("blender.grease_pencil")
+    gp, st = addon("blender.grease_pencil"), addon("blender.strokes")
     handle = handle_of(addon, traced, "Lines", 4)
-    gp.copy_strokes(handle, [1], handle)
+    st.add(handle, st.chosen(st.read(handle), [1]))
     ls.put(addon, traced, "Lines", 4, [(ls.lines(3)[4][0] + 5, False)])
     before = attribute(addon, traced, "Lines", 4, gp.TRACK).tolist()
     assert before == [1, 2, 3, 4, 5, 6, 2, 0]

@@ -143,7 +143,7 @@ def test_looks_and_deletions_go_to_all_frames(addon, traced):
 
 
 def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
-    gp, strokes, spreading = addon("blender.grease_pencil"), addon("blender.strokes"), addon("lines.spreading")
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
     arm = number_of(addon, traced, 4)
     handle = handle_of(addon, traced, "Lines", 1)
     content = strokes.read(handle)
@@ -151,10 +151,10 @@ def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
     half = content.sizes[i] // 2
     whole = np.ones(len(content.sizes), bool)
     whole[i] = False
-    one = spreading.part(content, ~whole)
+    one = strokes.chosen(content, np.flatnonzero(~whole))
     pieces = [strokes.Content(np.array([n]), one.types, {k: v[s] for k, v in one.point.items()}, one.curve, one.kinds)
               for n, s in ((half, slice(0, half)), (content.sizes[i] - half, slice(half, None)))]
-    strokes.write(handle, strokes.joined(strokes.joined(spreading.part(content, whole), pieces[0]), pieces[1]))
+    strokes.write(handle, strokes.joined(strokes.joined(strokes.chosen(content, np.flatnonzero(whole)), pieces[0]), pieces[1]))
     before = {frame: ls.strokes(addon, traced, "Lines", frame)[arm] for frame in range(2, 7)}
     assert bpy.ops.rototoon.spread_edits() == {"FINISHED"}
     for frame in range(2, 7):

@@ -1,7 +1,6 @@
 """What moves under a drawing without a keyframe on its object: a layer with an animated transform, and a scene whose markers change its camera."""
 
 import bpy
-import numpy as np
 import pytest
 import shots
 from mathutils import Matrix

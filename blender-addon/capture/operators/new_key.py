@@ -4,6 +4,7 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
+from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from ...common.wording import counted
@@ -92,7 +93,7 @@ def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> i
         _own(target, [stroke.index for stroke in sources[frame]])
     for number, group in others.items():
         before = len(gp.offsets(target)) - 1
-        gp.copy_strokes(drawings[number][0], [stroke.index for stroke in group], target)
+        st.add(target, st.chosen(st.read(drawings[number][0]), [stroke.index for stroke in group]))
         _own(target, list(range(before, before + len(group))))
     gp.set_keyframe_type(layer, {frame: gp.KEYFRAME})
     return strokes

@@ -95,6 +95,8 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
     def finish(self, _context, _work):
         guard.need_open(gp.find_layer(self._ob, name) for name, *_ in self._work_on)
         kept = records.read(self._ob.data)
+        for name in {name: None for name, *_ in self._done}:
+            gp.make_own(gp.find_layer(self._ob, name), [frame for of, frame, _ in self._done if of == name])
         for count, (name, frame, content) in enumerate(self._done, 1):
             (handle, kind), record = gp.drawings(gp.find_layer(self._ob, name))[frame], kept.setdefault(name, records.Layer())
             st.write(handle, content)
