@@ -9,6 +9,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .blender import footage, guard, movie
+from .blender.errors import Problem
 from .capture import arrivals, live, sessions, stand
 from .capture.operators.footage_base import used_folders
 from .lines import older_files
@@ -61,12 +62,53 @@ def _move(ob: bpy.types.Object, name: str, old: str, new: str) -> None:
 
 @persistent
 def _imported(context, *_args) -> None:
-    """Makes footage paths of appended objects relative to this file: Blender knows only its own paths."""
+    """Makes footage paths of appended and pasted objects relative to this file: Blender knows only its own paths."""
     for item in context.import_items:
         ob, library = item.id, item.source_library
         if isinstance(ob, bpy.types.Object) and library is not None and not guard.refusal(ob, guard.SETTINGS):
             for name in _FIELDS:
-                _move(ob, name, bpy.path.abspath(library.filepath), bpy.data.filepath)
+                _settle(ob, name, bpy.path.abspath(library.filepath))
+
+
+def _settle(ob: bpy.types.Object, name: str, library: str) -> None:
+    """Makes a path of an object from the file `library` relative to this file.
+
+    What is pasted comes from a file in the folder of the clipboard, and its paths are relative to the file where it was copied, which nobody
+    tells. Of the places where the footage may be, the first counts that has it: beside the library, where the pictures are that the
+    object is drawn on, since Blender keeps their paths right, and beside this file.
+    """
+    value = getattr(ob.rototoon, name)
+    if not value.startswith("//"):
+        _move(ob, name, library, bpy.data.filepath)
+        return
+    beside = [os.path.normpath(os.path.join(os.path.dirname(file), value[2:])) for file in (library, bpy.data.filepath) if file]
+    places = [beside[0], *_of_shown_pictures(ob, os.path.basename(value)), *beside[1:]]
+    found = next((place for place in places if _is_there(ob, name, place)), places[0])
+    setattr(ob.rototoon, name, footage.relative(found, bpy.data.filepath))
+
+
+def _of_shown_pictures(ob: bpy.types.Object, pattern: str) -> list[str]:
+    """Where footage of a name is, by the pictures of that name in the background of the object's camera and on its reference image."""
+    camera, empty = ob.rototoon.camera, ob.rototoon.reference
+    images = [entry.image for entry in camera.data.background_images] if camera is not None else []
+    images += [empty.data] if empty is not None else []
+    paths = [os.path.normpath(bpy.path.abspath(image.filepath, library=image.library)) for image in images if isinstance(image, bpy.types.Image)]
+    return [os.path.join(os.path.dirname(path), pattern) for path in paths if _is_of(pattern, os.path.basename(path))]
+
+
+def _is_of(pattern: str, picture: str) -> bool:
+    number = footage.number_of(picture)
+    try:
+        return number is not None and footage.picture(pattern, number) == picture
+    except Problem:
+        return False
+
+
+def _is_there(ob: bpy.types.Object, name: str, path: str) -> bool:
+    try:
+        return os.path.isfile(footage.picture(path, ob.rototoon.first) if name == "pattern" else path)
+    except Problem:
+        return False
 
 
 @persistent
