@@ -13,6 +13,7 @@ from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
 from . import jobs, reports
+from .undone import Undone
 
 NAVIGATION = {
     "MIDDLEMOUSE",
@@ -176,11 +177,12 @@ class Long(Reporting):
 
     Nothing changes before `finish`, so Esc leaves everything as it was. `finish` returns a message, or is a generator of finished shares
     that returns the message. In a window a generator writes in slices, between which the window is redrawn. Writing is not
-    interrupted: it is short, and half a result is worth nothing.
+    interrupted: it is short, and half a result is worth nothing. Undo in another window ends the work, since it knows Blender's data.
     """
 
     _work = None
     _timer = None
+    _undone: Undone | None = None
     _writing: Generator[float, None, str | None] | None = None
     _picked = False
     """Whether a file browser was opened. Its end calls `execute`, and there is a window in which to follow the work."""
@@ -215,12 +217,17 @@ class Long(Reporting):
         self.ready(context)
         self._work = self.begin(context)
         self._work.start()
+        self._undone = Undone(self._drop)
         self._timer = context.window_manager.event_timer_add(0.05, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         """Called by Blender."""
+        if self._undone.happened:
+            self._close(context)
+            self._say("WARNING", f"{self.bl_label}: stopped, since something was undone meanwhile")
+            return {"CANCELLED"}
         if self._writing is None and event.type == "ESC" and event.value == "PRESS":
             self._work.cancel()
         if event.type != "TIMER":
@@ -258,11 +265,15 @@ class Long(Reporting):
         """Called by Blender when it loads a file or quits during the work, and when a dialog or a file browser is closed before it."""
         if self._work is None:
             return
+        self._drop()
+        self._close(context)
+
+    def _drop(self) -> None:
+        """Ends the work, also half way through the writing."""
         self._work.cancel()
         self._work.join()
         if self._writing is not None:
             self._writing.close()
-        self._close(context)
 
     def _wait(self, context) -> None:
         manager = context.window_manager
@@ -278,6 +289,9 @@ class Long(Reporting):
             manager.progress_end()
 
     def _close(self, context) -> None:
+        if self._undone is not None:
+            self._undone.stop()
+            self._undone = None
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None

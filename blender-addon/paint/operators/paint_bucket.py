@@ -9,9 +9,10 @@ from ...blender import windows
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import NAVIGATION, Reporting
+from ...common.undone import Undone
 from ...common.wording import counted
 from ...lines.operators.tracing_base import OnFootage
-from ...tween.operators.pairs_base import Undone, view_at
+from ...tween.operators.pairs_base import view_at
 from .. import bucket
 
 HELP = "Click into a region to fill it, Ctrl-click to take a colour, Ctrl Z to undo, Esc to leave"

@@ -6,6 +6,7 @@ import numpy as np
 from ...blender import windows
 from ...common import jobs
 from ...common.operators import NAVIGATION, OnDrawing, Reporting
+from ...common.undone import Undone
 from .. import pair_overlay, pairing
 
 HELP = "Click two strokes to pair them, Alt-click one to free it, Ctrl Z to undo, Esc to leave"
@@ -142,27 +143,6 @@ class Pairing(OnDrawing, Reporting):
             windows.redraw_views()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
-
-
-class Undone:
-    """Notes whether anything is undone, for example in another window. The shown drawings do not exist any more then."""
-
-    def __init__(self):
-        self.happened = False
-        for hooks in self._hooks():
-            hooks.append(self._note)
-
-    def stop(self) -> None:
-        """Removes the handlers."""
-        for hooks in self._hooks():
-            if self._note in hooks:
-                hooks.remove(self._note)
-
-    def _hooks(self):
-        return bpy.app.handlers.undo_pre, bpy.app.handlers.redo_pre
-
-    def _note(self, *_args) -> None:
-        self.happened = True
 
 
 def view_at(context, event):
