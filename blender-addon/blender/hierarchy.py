@@ -13,6 +13,7 @@ from mathutils import Matrix
 
 from . import camera as cameras
 from . import grease_pencil as gp
+from .animated import curves
 
 
 def carrier(ob, layer) -> tuple[str, str] | None:
@@ -30,10 +31,7 @@ def is_animated(ob, name: str) -> bool:
     data = ob.data.animation_data
     if data is None:
         return False
-    actions = [data.action, *(strip.action for track in data.nla_tracks for strip in track.strips)]
-    strips = [strip for action in actions if action is not None for layer in action.layers for strip in layer.strips]
-    paths = [curve.data_path for curve in data.drivers]
-    paths += [curve.data_path for strip in strips for bag in strip.channelbags for curve in bag.fcurves]
+    paths = [curve.data_path for curve in (*data.drivers, *curves(ob.data))]
     pattern = re.compile(re.escape(f'layers["{bpy.utils.escape_identifier(name)}"].') + "(translation|rotation|scale)$")
     return any(pattern.search(path) for path in paths)
 

@@ -16,6 +16,7 @@ import bpy
 import numpy as np
 
 from .errors import Problem
+from .frames import kept
 
 MADE = "rototoon_layers"
 """Property of masks that were made here: the names of their layers, one a line."""
@@ -60,13 +61,9 @@ def write(context, name: str, parts: list[Outline], width: int, height: int) -> 
     mask[MADE] = "\n".join(layer.name for layer in mask.layers)
     every = sorted({frame for part in parts for frame in part.frames})
     mask.frame_start, mask.frame_end = every[0], every[-1]
-    current = context.scene.frame_current
-    try:
-        with _mask_editor(context, mask):
-            for frame in every:
-                _key(context.scene, mask, parts, frame, (width, height))
-    finally:
-        context.scene.frame_set(current)
+    with kept(context.scene), _mask_editor(context, mask):
+        for frame in every:
+            _key(context.scene, mask, parts, frame, (width, height))
     for layer, part in zip(mask.layers, parts, strict=True):
         _lifetime(layer, min(part.frames), max(part.frames), every[0], every[-1])
     return mask

@@ -115,3 +115,29 @@ def test_the_scene_comes_back_to_a_moment_between_two_frames(addon, frame, share
         scene.frame_set(10)
     assert (scene.frame_current, scene.frame_subframe) == moment
     assert scene.frame_current_final == pytest.approx(frame + share)
+
+
+def test_what_is_not_keyed_yet_stays(addon, tmp_path):
+    ob, scene = shots.set_up(tmp_path), bpy.context.scene
+    addon("scripting").set_key(ob, 1, {"square": shots.square(0)})
+    ob.keyframe_insert("location", frame=1)
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    scene.collection.objects.link(rig)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    rig.data.edit_bones.new('arm.L "2"').tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bone = rig.pose.bones[0]
+    rig["open"] = 0.25
+    bone["grip"] = 1
+    for owner, path in ((bone, "location"), (bone, "rotation_quaternion"), (bone, '["grip"]'), (rig, '["open"]'), (rig, "hide_render")):
+        owner.keyframe_insert(path, frame=1)
+    scene.frame_set(9)
+    bone.location, bone.rotation_quaternion[1], bone["grip"], rig["open"], rig.hide_render = (1, 2, 3), 0.5, 3, 0.75, True
+    bpy.context.view_layer.objects.active = ob
+    assert bpy.ops.rototoon.new_key() == {"FINISHED"}
+    assert tuple(bone.location) == (1, 2, 3) and tuple(bone.rotation_quaternion) == (1, 0.5, 0, 0)
+    assert (bone["grip"], rig["open"], rig.hide_render, scene.frame_current) == (3, 0.75, True, 9)
+    scene.frame_set(1)
+    scene.frame_set(9)
+    assert tuple(bone.location) == (0, 0, 0), "nothing was keyed"
