@@ -54,7 +54,8 @@ def _owners(scene: bpy.types.Scene) -> list[bpy.types.ID]:
         materials = [slot.material for slot in ob.material_slots]
         blocks = [ob, ob.data, getattr(ob.data, "shape_keys", None), *materials, *(getattr(each, "node_tree", None) for each in materials)]
         found.update(dict.fromkeys(blocks))
-    return [each for each in found if each is not None and each.library is None and each.animation_data is not None]
+    # An empty may show an image, which has no animation.
+    return [each for each in found if getattr(each, "animation_data", None) is not None and each.library is None]
 
 
 def _value(owner: bpy.types.ID, path: str) -> Any:

@@ -104,12 +104,13 @@ def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, n
 
     Blender draws on the XZ plane (front), or on the plane through the object's origin that faces the view. If the points lie on
     one of these, it is taken exactly. Otherwise it is the plane that fits the points best. If the points lie on a line, it is the
-    plane through their mean that faces the view.
+    plane through their mean that faces the view. Points without a place show nothing.
     """
     front = np.zeros(3), np.array([0.0, 1.0, 0.0])
+    points = np.asarray(points, np.float64)
+    points = points[np.isfinite(points).all(1)]
     if not len(points):
         return front
-    points = np.asarray(points, np.float64)
     mean = points.mean(0)
     spread = points - mean
     extent = np.abs(spread).max()
@@ -141,7 +142,9 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     place[:2, :2] = turn * half
     place[:2, 2] = centre
     matrix = np.array(camera.matrix_world.normalized(), np.float64)
-    return View(np.linalg.inv(matrix), data.type == "PERSP", np.linalg.inv(place @ unit)[:2])
+    if not np.linalg.det(place):
+        raise Problem(f'The footage in the background of "{camera.name}" has a scale of 0: set the scale of the background image to 1')
+    return View(_inverse(matrix, camera), data.type == "PERSP", np.linalg.inv(place @ unit)[:2])
 
 
 def camera_frame(render, data) -> tuple[float, float, float, float]:
@@ -198,7 +201,23 @@ def reference_view(empty, width: int, height: int) -> View:
         ]
     )
     matrix = np.array(empty.matrix_world, np.float64)
-    return View(np.linalg.inv(matrix), False, np.linalg.inv(place)[:2])
+    if not np.linalg.det(place):
+        raise Problem(f'The image of "{empty.name}" has a size of 0: set its size to 1')
+    return View(_inverse(matrix, empty), False, np.linalg.inv(place)[:2])
+
+
+def _inverse(matrix: np.ndarray, ob) -> np.ndarray:
+    """The inverse of an object's matrix."""
+    if not np.linalg.det(matrix[:3, :3]):
+        raise Problem(f'"{ob.name}", or what it hangs on, has a scale of 0: set the scale to 1')
+    return np.linalg.inv(matrix)
+
+
+def need_size(ob, matrix: np.ndarray) -> np.ndarray:
+    """A matrix (4×4) that places drawings of an object, if it has an inverse. Otherwise raises a `Problem`."""
+    if not np.linalg.det(matrix[:3, :3]):
+        raise Problem(f'"{ob.name}", or what it or its layer hangs on, has a scale of 0: set the scale to 1')
+    return matrix
 
 
 def layer_to_world(ob, layer) -> np.ndarray:

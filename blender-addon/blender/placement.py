@@ -28,17 +28,24 @@ class Mapper:
         """`names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the plane on which the artist
         drew."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
-        self._points = points
+        self._ob, self._points, self._names, self._frames = ob, points, names, set()
         layers = [gp.find_layer(ob, name) for name in names]
         self._moves = moves(ob, layers)
         if not self._moves:
             self._add(ob, layers, None)
+        self.extend(frames)
+
+    def extend(self, frames: Iterable[int]) -> None:
+        """Adds frames. Where nothing moves they are known already."""
+        new = set(frames) - self._frames
+        if not self._moves or not new:
             return
-        scene = bpy.context.scene
+        layers, scene = [gp.find_layer(self._ob, name) for name in self._names], bpy.context.scene
         with kept(scene):
-            for frame in sorted(set(frames)):
+            for frame in sorted(new):
                 scene.frame_set(frame)
-                self._add(ob, layers, frame)
+                self._add(self._ob, layers, frame)
+        self._frames |= new
 
     def at(self, layer: int, frame: int) -> cameras.Mapping:
         """The mapping of a layer on a scene frame."""
@@ -50,14 +57,9 @@ class Mapper:
         return not self._moves
 
     def _add(self, ob, layers, frame: int | None) -> None:
-        try:
-            view = view_of(ob)
-        except np.linalg.LinAlgError:
-            raise Problem("The camera or reference image that shows the footage has a scale of 0: set its scale to 1") from None
+        view = view_of(ob)
         for index, layer in enumerate(layers):
-            matrix = cameras.layer_to_world(ob, layer)
-            if not np.linalg.det(matrix[:3, :3]):
-                raise Problem(f'"{ob.name}", or what it or its layer hangs on, has a scale of 0: set the scale to 1')
+            matrix = cameras.need_size(ob, cameras.layer_to_world(ob, layer))
             # The view's z axis in layer space: the normal of a plane that faces the view.
             normal = (view.to_view @ matrix)[2, :3]
             normal = normal / np.linalg.norm(normal)

@@ -24,7 +24,7 @@ class Projection:
 
     def pixels(self, layer, points: np.ndarray) -> np.ndarray:
         """Pixels (N, 2) of points (N, 3) of a layer."""
-        return cameras.Mapping(self._view, cameras.layer_to_world(self._ob, layer)).to_pixels(points)
+        return cameras.Mapping(self._view, cameras.need_size(self._ob, cameras.layer_to_world(self._ob, layer))).to_pixels(points)
 
     def scale(self, layer, points: np.ndarray) -> float:
         """Pixels per unit of the layer, at the mean of some points."""

@@ -141,6 +141,8 @@ def laying_out(
     """As `lay_out`, with a step for each part."""
     parts = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
     frames = np.unique(np.concatenate([tracks[p.number].frames for p in parts] or [np.zeros(0, int)]))
+    # A part with one key is tracked beyond all drawings.
+    mapper.extend(frames.tolist())
     sizes = np.array([p.count for p in parts], np.int32)
     ends = np.concatenate([[0], np.cumsum(sizes)]).astype(int)
     columns = [slice(ends[i], ends[i + 1]) for i in range(len(parts))]

@@ -20,6 +20,12 @@ def pairs(kept: Any, second: type) -> list[tuple[int, Any]]:
     return [(row[0], row[1]) for row in good]
 
 
+def rows(kept: Any, *texts: str) -> list[dict[str, Any]]:
+    """The objects in a JSON list that have `texts`, each a field with a text."""
+    values = kept if isinstance(kept, list) else []
+    return [each for each in values if isinstance(each, dict) and all(isinstance(each.get(name), str) for name in texts)]
+
+
 def _value(text: Any) -> Any:
     try:
         return json.loads(text) if text else None

@@ -24,7 +24,8 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
     settings.next_number = len(settings.parts) + 1
     _write_keys(ob, layer, project, material)
     found = contours.read(ob)
-    mapper = document.mapper_of(ob, found)
+    corrected = {frame for entry in project.get("parts", []) for name in ("pins", "centers") for frame in by_frame(entry.get(name))}
+    mapper = document.mapper_of(ob, found, *(frame + settings.frame_offset for frame in corrected))
     tracks, fixed = {}, {}
     for part, entry in zip(list(found.parts), project.get("parts", []), strict=True):
         track, fix = _results(part, entry, mapper, settings.frame_offset)

@@ -112,7 +112,7 @@ def change_body(ob, given: str | dict[str, Any]) -> list[str]:
     if given == bodies.HUMAN:
         del extra["skeleton"]
     if "limbs" in extra:
-        extra["limbs"] = [limb for limb in extra["limbs"] if _fits(after, limb)]
+        extra["limbs"] = [limb for limb in defined(ob) if _fits(after, limb)]
     ob.rototoon.extra = json.dumps(extra)
     return lost
 
@@ -155,14 +155,14 @@ def keep(ob, made: list[dict[str, Any]]) -> None:
 
 def marks(ob) -> list[dict[str, Any]]:
     """The object's marks of what is in front of what."""
-    return _extra(ob).get("depth_marks", [])
+    return kept.rows(_extra(ob).get("depth_marks"), "front", "behind")
 
 
 def add_mark(ob, mark: dict[str, Any]) -> None:
     """Adds a mark to the object's document. It replaces an opposite one on the same frames."""
     extra = _extra(ob)
     opposite = {**mark, "front": mark["behind"], "behind": mark["front"]}
-    others = [known for known in extra.get("depth_marks", []) if known not in (mark, opposite)]
+    others = [known for known in marks(ob) if known not in (mark, opposite)]
     extra["depth_marks"] = [*others, mark]
     ob.rototoon.extra = json.dumps(extra)
 
@@ -173,13 +173,13 @@ def _extra(ob) -> dict[str, Any]:
 
 def defined(ob) -> list[dict[str, Any]]:
     """The object's limbs."""
-    return _extra(ob).get("limbs", [])
+    return kept.rows(_extra(ob).get("limbs"), "from", "to")
 
 
 def body_name(ob) -> str:
     """The name of the object's body, for a panel."""
     given = _extra(ob).get("skeleton", bodies.HUMAN)
-    name = given if isinstance(given, str) else given.get("name", "?")
+    name = given if isinstance(given, str) else str(kept.fields(given).get("name", "?"))
     return name.title() if name in BODIES else name
 
 
@@ -207,8 +207,9 @@ def _lines(ob) -> dict[int, dict[int, np.ndarray]]:
         every = gp.positions(handle, int(starts[-1]))
         for number, a, b in zip(numbers, starts, starts[1:]):
             if number and b - a > 1:
-                ends = mapper.at(0, frame).to_pixels(every[[a, b - 1]])
-                lines.setdefault(int(number) - 1, {})[frame - ob.rototoon.frame_offset] = ends
+                ends = every[[a, b - 1]]
+                if np.isfinite(ends).all():
+                    lines.setdefault(int(number) - 1, {})[frame - ob.rototoon.frame_offset] = mapper.at(0, frame).to_pixels(ends)
     return lines
 
 

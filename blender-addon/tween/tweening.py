@@ -13,7 +13,7 @@ import numpy as np
 from rototoon import tween
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy
+from ..blender import camera, guard, hierarchy
 from ..blender.errors import Problem
 from ..common.wording import are, listed
 from . import between, captured, layer_pegs, records, sheets, surroundings
@@ -100,7 +100,7 @@ def _plan_group(
             continue
         usual = next(iter(mine.values()))
         choices = [mine.get(k) or _kept(record, run[k], run[k + 1]) or usual for k in range(len(run) - 1)]
-        matrices = [hierarchy.in_carrier(gp.find_layer(ob, name)) for name in names]
+        matrices = [camera.need_size(ob, hierarchy.in_carrier(gp.find_layer(ob, name))) for name in names]
         to_sheet = [np.linalg.inv(matrices[0]) @ matrix for matrix in matrices]
         plane = sheets.Plane.of(_drawn(ob, names, run, to_sheet), to_sheet)
         sheet = sheets.Sheet(names, run, plane, mine, choices)

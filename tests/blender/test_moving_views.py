@@ -1,6 +1,9 @@
 """What moves under a drawing without a keyframe on its object: a layer with an animated transform, and a scene whose markers change its camera."""
 
+import json
+
 import bpy
+import numpy as np
 import pytest
 import shots
 from mathutils import Matrix
@@ -141,3 +144,35 @@ def test_what_is_not_keyed_yet_stays(addon, tmp_path):
     scene.frame_set(1)
     scene.frame_set(9)
     assert tuple(bone.location) == (0, 0, 0), "nothing was keyed"
+
+
+def moving_camera():
+    """The scene's camera goes half a unit to the right from frame 1 to frame 9."""
+    camera = bpy.context.scene.camera
+    before = camera.location.x
+    for frame, along in ((1, 0.0), (9, HALF)):
+        camera.location.x = before + along
+        camera.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(1)
+
+
+def test_a_single_key_is_tracked_through_a_moving_camera(addon, library, tmp_path):
+    ob = shots.set_up(tmp_path)
+    moving_camera()
+    addon("scripting").set_key(ob, 1, {"square": shots.square(0)})
+    assert bpy.ops.rototoon.track() == {"FINISHED"}
+    found = addon("scripting").tracks(ob)["square"]
+    assert list(found.frames) == list(range(1, 10))
+    assert found.pixels == pytest.approx(np.stack([shots.square(k) for k in range(9)]), abs=1.5)
+    assert drawn_on(addon, ob, 9) == pytest.approx(found.pixels[8], abs=2e-3)
+
+
+def test_corrections_of_a_document_come_in_through_a_moving_camera(addon, tmp_path):
+    picked = shots.draw_sequence(tmp_path / "frames")
+    keys, pins = {"1": shots.square(0).tolist()}, {"5": {"0": [50.0, 40.0]}}
+    footage = {"pattern": "frames/shot_%03d.png", "first": 1, "last": 9, "fps": 24, "width": 160, "height": 90}
+    (tmp_path / "given.json").write_text(json.dumps({"rototoon": 1, "footage": footage, "parts": [{"name": "square", "keys": keys, "pins": pins}]}))
+    bpy.ops.rototoon.setup(filepath=str(picked))
+    moving_camera()
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "given.json"), into="ACTIVE") == {"FINISHED"}
+    assert drawn_on(addon, bpy.context.object, 5)[0] == pytest.approx([50.0, 40.0], abs=2e-3)

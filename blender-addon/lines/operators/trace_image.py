@@ -76,7 +76,7 @@ class _Still:
     still = True
 
     def __init__(self, ob, empty, name: str, size: tuple[int, int]):
-        matrix = cameras.layer_to_world(ob, gp.find_layer(ob, name))
+        matrix = cameras.need_size(ob, cameras.layer_to_world(ob, gp.find_layer(ob, name)))
         inverse, world = np.linalg.inv(matrix), np.array(empty.matrix_world, np.float64)
         normal = world[:3, 2] / np.linalg.norm(world[:3, 2])
         point = inverse @ np.append(world[:3, 3] + LIFT * normal, 1.0)
