@@ -224,8 +224,9 @@ def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struc
 
 def has_strokes(layer: bpy.types.bpy_struct) -> bool:
     """Whether any drawing of a layer has strokes. No array is read."""
-    positions_of = (drawing.attributes.get("position") for drawing, _ in drawings(layer).values())
-    return any(found is not None and len(found.data) for found in positions_of)
+    found = (frame.drawing for frame in layer.frames)
+    positions_of = (drawing.attributes.get("position") for drawing in found if drawing is not None)
+    return any(each is not None and len(each.data) for each in positions_of)
 
 
 @contextmanager

@@ -40,3 +40,5 @@ def need(ob: Any, kind: type[OnDrawing], changes: str = guard.DRAWINGS) -> None:
         raise Problem(why)
     if gp.is_drawing(ob):
         guard.need(ob, changes)
+    # Blender does the same before it runs an operator: what the script has moved is where it put it.
+    bpy.context.view_layer.update()

@@ -94,3 +94,26 @@ def test_a_limb_line_without_a_place_marks_nothing(addon, tmp_path):
     gp.put(handle, "position", np.array([[0, 0, 0], [1, 0, 0], [np.nan, 0, 0], [1, 0, 1]]))
     gp.put(handle, gp.KEY_POINT, np.array([1, 2]))
     assert limbs.count_lines(ob) == 1
+
+
+def test_numbers_that_no_stroke_has_are_told(addon, tmp_path):
+    shots.set_up(tmp_path)
+    with pytest.raises(RuntimeError, match="numbers: found '98, 99', expected numbers of strokes on frame 1"):
+        bpy.ops.rototoon.make_part(numbers="98, 99")
+
+
+def test_import_without_a_file_says_so(addon):
+    with pytest.raises(RuntimeError, match="No file chosen"):
+        bpy.ops.rototoon.import_document()
+
+
+def test_scripts_find_what_they_have_moved(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    scripting = addon("scripting")
+    scripting.set_key(ob, 1, {"square": shots.square(0)})
+    ob.location.x += 0.5
+    assert scripting.set_key(ob, 1, {"diamond": shots.diamond(0)}) == ["diamond"]
+    # 160 pixels are 10 units.
+    found = [pixels for _, pixels in shots.pixels(addon, ob, 1)]
+    assert found[0] == pytest.approx(shots.square(0) + (8, 0), abs=2e-3)
+    assert found[1] == pytest.approx(shots.diamond(0), abs=2e-3)

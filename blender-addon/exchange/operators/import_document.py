@@ -45,6 +45,8 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def run(self, context) -> str:
+        if not self.filepath:
+            raise Problem("No file chosen")
         path = bpy.path.abspath(self.filepath)
         project = files.load(path)
         drawn.checked(project)

@@ -38,7 +38,10 @@ class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
         ob, frame = context.object, context.scene.frame_current
         settings = ob.rototoon
         guard.need_named(ob, [settings.contours_layer], hidden=True)
-        found = _strokes(ob, frame, self._wanted())
+        wanted = self._wanted()
+        found = _strokes(ob, frame, wanted)
+        if not found and wanted:
+            raise Problem(f"numbers: found {self.numbers!r}, expected numbers of strokes on frame {frame}")
         if not found:
             raise Problem("No strokes are selected: select the strokes around the part in Edit Mode, then press Make Part")
         unit = max(settings.height / 540, 1.0)
