@@ -8,7 +8,7 @@ import os
 import bpy
 from bpy.app.handlers import persistent
 
-from .blender import footage, guard, movie
+from .blender import footage, guard, memo, movie
 from .blender.errors import Problem
 from .capture import arrivals, live, sessions, stand
 from .capture.operators.footage_base import used_folders
@@ -119,14 +119,18 @@ def _list_clips(*_args) -> None:
 _HOOKS = (
     ("load_pre", live.closing),
     ("load_pre", arrivals.reset),
+    ("load_post", memo.clear),
     ("load_post", stand.clear),
     ("load_post", _loaded),
     ("load_post", live.opened),
     ("load_post", _list_clips),
+    ("depsgraph_update_post", memo.changed),
     ("depsgraph_update_post", arrivals.changed),
     ("depsgraph_update_post", live.changed),
     ("undo_pre", live.undoing),
     ("redo_pre", live.undoing),
+    ("undo_post", memo.clear),
+    ("redo_post", memo.clear),
     ("undo_post", stand.clear),
     ("redo_post", stand.clear),
     ("undo_post", arrivals.undone),

@@ -208,12 +208,14 @@ def every_layer(ob: bpy.types.Object) -> list[bpy.types.bpy_struct]:
 
 def frame_numbers(layer: bpy.types.bpy_struct, selected: bool = False) -> list[int]:
     """Frame numbers of a layer's drawings in time order; with `selected`, only those of selected frames."""
-    return [frame.frame_number for frame in layer.frames if (frame.select or not selected) and frame.drawing is not None]
+    numbers = [frame.frame_number for frame in layer.frames if frame.select or not selected]
+    return [number for number in numbers if layer.get_frame_at(number) is not None]
 
 
 def ends(layer: bpy.types.bpy_struct) -> list[int]:
     """The frames on which a drawing ends by itself. Blender has them where a drawing was made with a duration, and they have no drawing."""
-    return [frame.frame_number for frame in layer.frames if frame.drawing is None]
+    numbers = [frame.frame_number for frame in layer.frames]
+    return [number for number in numbers if layer.get_frame_at(number) is None]
 
 
 def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struct, str]]:
@@ -222,10 +224,22 @@ def drawings(layer: bpy.types.bpy_struct) -> dict[int, tuple[bpy.types.bpy_struc
     return {frame.frame_number: (drawing, frame.keyframe_type) for frame, drawing in found if drawing is not None}
 
 
+def handles(layer: bpy.types.bpy_struct, kind: str = "") -> Iterator[bpy.types.bpy_struct]:
+    """The drawings of a layer one by one, without their numbers; with `kind`, only those on frames of that keyframe type. Blender searches
+    for each drawing, so whoever looks for one should stop there."""
+    wanted = (frame.drawing for frame in layer.frames if kind in ("", frame.keyframe_type))
+    return (drawing for drawing in wanted if drawing is not None)
+
+
+def shown(layer: bpy.types.bpy_struct, number: int) -> tuple[int, bpy.types.bpy_struct, str] | None:
+    """What a layer shows on a frame: the frame of the drawing, the drawing, and its keyframe type. `None` if it shows none."""
+    frame = layer.get_frame_at(number)
+    return None if frame is None else (frame.frame_number, frame.drawing, frame.keyframe_type)
+
+
 def has_strokes(layer: bpy.types.bpy_struct) -> bool:
     """Whether any drawing of a layer has strokes. No array is read."""
-    found = (frame.drawing for frame in layer.frames)
-    positions_of = (drawing.attributes.get("position") for drawing in found if drawing is not None)
+    positions_of = (drawing.attributes.get("position") for drawing in handles(layer))
     return any(each is not None and len(each.data) for each in positions_of)
 
 

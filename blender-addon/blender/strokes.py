@@ -182,8 +182,8 @@ def bottom_layer(ob, name: str):
 
 def shown_frame(layer, frame: int) -> int | None:
     """The frame of the drawing that a layer shows on `frame`; `None` if it shows none."""
-    number = max((each.frame_number for each in layer.frames if each.frame_number <= frame), default=None)
-    return None if number in gp.ends(layer) else number
+    found = layer.get_frame_at(frame)
+    return None if found is None else found.frame_number
 
 
 def editable_layers(ob, active: bool) -> list:
@@ -208,7 +208,7 @@ def drawn_layers(ob, active: bool) -> list:
 def is_paint(ob, layer) -> bool:
     """Whether Rototoon has painted on a layer. One that only bears the name is the artist's. Reads no array."""
     named = layer.name == ob.rototoon.fills_layer
-    return named and any(gp.has(handle, gp.CLICK) for handle, _ in gp.drawings(layer).values())
+    return named and any(gp.has(handle, gp.CLICK) for handle in gp.handles(layer))
 
 
 def filled(ob, content: Content) -> np.ndarray:

@@ -171,9 +171,8 @@ def _of_each(points: np.ndarray, starts: np.ndarray) -> np.ndarray:
 def has_generated(ob: bpy.types.Object) -> bool:
     """Whether Track has drawn anything. Reads no strokes, and keeps nothing: scripts may ask at any moment."""
     return any(
-        kind == gp.GENERATED or gp.has(handle, gp.TRACKED)
+        any(True for _ in gp.handles(layer, gp.GENERATED)) or any(gp.has(handle, gp.TRACKED) for handle in gp.handles(layer))
         for layer in gp.layers(ob, ob.rototoon.contours_layer)
-        for handle, kind in gp.drawings(layer).values()
     )
 
 

@@ -191,4 +191,4 @@ def shares(points: np.ndarray) -> np.ndarray:
 
 def is_lines(layer) -> bool:
     """Whether a layer has traced drawings. Reads no array."""
-    return any(kind == gp.GENERATED and gp.has(handle, gp.LINE) for handle, kind in gp.drawings(layer).values())
+    return any(gp.has(handle, gp.LINE) for handle in gp.handles(layer, gp.GENERATED))

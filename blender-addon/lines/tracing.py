@@ -136,7 +136,9 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
     layers = [layer for group in plan.groups for layer in group.layers]
     names = [layer.name for layer in layers]
     _need_unchanged(ob, names, plan)
-    gp.layer(ob, home)
+    if gp.find_layer(ob, home) is None:
+        # What was traced is edited next, and carried from the active layer.
+        gp.activate(ob, gp.layer(ob, home))
     yield 0.0
     done, kept = Done(), records.read(ob.data)
     counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})

@@ -35,10 +35,10 @@ def marked(ob, frame: int) -> list[Marked]:
     """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not."""
     settings, found = ob.rototoon, []
     for layer in st.drawn_layers(ob, active=False):
-        at = st.shown_frame(layer, frame)
-        if guard.is_hidden(layer) or at is None:
+        shown = gp.shown(layer, frame)
+        if guard.is_hidden(layer) or shown is None:
             continue
-        handle, kind = gp.drawings(layer)[at]
+        at, handle, kind = shown
         if kind != gp.GENERATED or not (gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)):
             continue
         here = settings.doubt_layer == layer.name and settings.doubt_frame == at
@@ -67,15 +67,15 @@ def marked_regions(ob, frame: int) -> list[Marked]:
     """The painted regions of an object whose colour is probably wrong on a frame. Regions that the artist changed are not."""
     settings = ob.rototoon
     layer = gp.find_layer(ob, settings.fills_layer)
-    shown = None if layer is None or guard.is_hidden(layer) else st.shown_frame(layer, frame)
+    shown = None if layer is None or guard.is_hidden(layer) else gp.shown(layer, frame)
     if shown is None:
         return []
-    handle, kind = gp.drawings(layer)[shown]
+    at, handle, kind = shown
     if not gp.has(handle, gp.CONFIDENCE):
         return []
     sheet, matrix = sheets.of_drawing(handle, kind), camera.layer_to_world(ob, layer)
     starts, numbers = sheet.content.starts, sheet.content.strokes(gp.TRACK)
-    chosen = settings.fill_doubt_number if settings.fill_doubt_frame == shown else 0
+    chosen = settings.fill_doubt_number if settings.fill_doubt_frame == at else 0
     found = []
     for i in regions.of_sheet(sheet):
         points = sheet.content.point["position"][starts[i] : starts[i + 1]]

@@ -63,10 +63,10 @@ class Tracked:
 def _tracked(ob, frame: int) -> Iterator[Tracked]:
     """The tracked contours of an object on a frame, by layer."""
     for layer in gp.layers(ob, ob.rototoon.contours_layer):
-        found = gp.drawings(layer).get(frame)
-        if guard.is_hidden(layer) or found is None:
+        found = gp.shown(layer, frame)
+        if guard.is_hidden(layer) or found is None or found[0] != frame:
             continue
-        handle, kind = found
+        _, handle, kind = found
         starts = gp.offsets(handle)
         made = gp.value(handle, gp.MADE, len(starts) - 1)
         # On an artist's frame on which every stroke is marked, the marks are old: somebody has copied a generated frame.

@@ -97,3 +97,12 @@ def test_snap_says_that_a_group_has_the_layers_name(addon, library, fake, tmp_pa
         with pytest.raises(RuntimeError, match="give the group another name"):
             bpy.ops.rototoon.snap()
     assert [layer.name for layer in ob.data.layers] == before
+
+
+def test_the_new_layer_of_traced_lines_is_active(addon, library, tmp_path):
+    ob = shots.set_up(tmp_path)
+    assert bpy.ops.rototoon.trace_drawing(frames="CURRENT") == {"FINISHED"}
+    assert ob.data.layers.active.name == ob.rototoon.lines_layer
+    ob.data.layers.active = shots.layer_of(ob)
+    bpy.ops.rototoon.trace_drawing()
+    assert ob.data.layers.active == shots.layer_of(ob), "afterwards the artist chooses"

@@ -48,8 +48,10 @@ def test_strokes_around_a_part_become_its_contour(addon, traced):
     assert part.name == "body" and part.closed and 8 <= part.count <= 60
     contour = ls.strokes(addon, traced, "Contours", 1)
     assert away(next(iter(contour.values())), ls.lines(0)[0][0]) < 2
-    with pytest.raises(RuntimeError, match="No strokes are selected"):
+    with pytest.raises(RuntimeError, match="numbers: found '99', expected numbers of strokes on frame 1"):
         bpy.ops.rototoon.make_part(numbers="99")
+    with pytest.raises(RuntimeError, match="No strokes are selected"):
+        bpy.ops.rototoon.make_part()
     with pytest.raises(RuntimeError, match='There is a part "body" already'):
         bpy.ops.rototoon.make_part(numbers=str(body), name="body")
     # On the next frame the artist selects the stroke. It is the same part.

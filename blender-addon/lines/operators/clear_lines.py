@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, memo
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted, joined, stayed
 from .. import drawings as dr
@@ -23,7 +23,7 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = super().lacking(ob, changes)
-        return why or ("" if any(dr.is_lines(layer) for layer in dr.layers(ob)) else "Nothing is traced yet")
+        return why or ("" if memo.kept(ob, any_traced) else "Nothing is traced yet")
 
     def run(self, context) -> str:
         ob = context.object
@@ -40,6 +40,11 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
         records.write(ob.data, kept)
         ob.data.update_tag()
         return joined(f"{counted(removed, 'traced drawing')} removed", stayed("traced drawing", edited))
+
+
+def any_traced(ob) -> bool:
+    """Whether a layer has traced drawings."""
+    return any(dr.is_lines(layer) for layer in dr.layers(ob))
 
 
 CLASSES = (ROTOTOON_OT_clear_lines,)

@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, memo
 from ...blender.errors import Problem
 from ...common.operators import OnDrawing
 from ...tween.operators.pairs_base import Pairing
@@ -33,7 +33,7 @@ class ROTOTOON_OT_match_lines(Pairing, bpy.types.Operator):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = OnDrawing.lacking(ob, changes)
-        return why or ("" if numbered(ob) else "Nothing is traced yet: press Trace Drawing or Carry Strokes first")
+        return why or nothing_traced(ob)
 
     def make_pairing(self, context) -> pairing.LinePairing:
         ob = context.object
@@ -50,7 +50,17 @@ class ROTOTOON_OT_match_lines(Pairing, bpy.types.Operator):
 
 def numbered(ob) -> list:
     """The layers with numbered strokes that are no contours, snapped lines or paint."""
-    return [layer for layer in dr.layers(ob) if any(gp.has(handle, gp.LINE) for handle, _ in gp.drawings(layer).values())]
+    return [layer for layer in dr.layers(ob) if any(gp.has(handle, gp.LINE) for handle in gp.handles(layer))]
+
+
+def any_numbered(ob) -> bool:
+    """Whether a layer has numbered strokes."""
+    return any(dr.is_lines(layer) for layer in dr.layers(ob)) or bool(numbered(ob))
+
+
+def nothing_traced(ob) -> str:
+    """Why there is nothing to do for operators on traced strokes; empty if there is something."""
+    return "" if memo.kept(ob, any_numbered) else "Nothing is traced yet: press Trace Drawing or Carry Strokes first"
 
 
 CLASSES = (ROTOTOON_OT_match_lines,)

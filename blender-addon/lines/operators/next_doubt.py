@@ -5,7 +5,7 @@ import bpy
 from ...blender import guard, selection
 from ...common.operators import Guarded, OnDrawing
 from .. import doubts
-from .match_lines import numbered
+from .match_lines import nothing_traced
 
 
 class ROTOTOON_OT_next_doubt(Guarded, OnDrawing, bpy.types.Operator):
@@ -27,7 +27,7 @@ class ROTOTOON_OT_next_doubt(Guarded, OnDrawing, bpy.types.Operator):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = super().lacking(ob, changes)
-        return why or ("" if numbered(ob) else "Nothing is traced yet: press Trace Drawing or Carry Strokes first")
+        return why or nothing_traced(ob)
 
     def run(self, context) -> str:
         ob, scene = context.object, context.scene

@@ -12,7 +12,7 @@ from ...common.operators import Long
 from ...common.wording import counted
 from .. import drawings as dr
 from .. import records, spreading
-from .match_lines import numbered
+from .match_lines import nothing_traced, numbered
 from .tracing_base import OnFootage
 
 
@@ -36,7 +36,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
     def lacking(cls, ob, changes: str) -> str:
         """As `OnDrawing.lacking`."""
         why = super().lacking(ob, changes)
-        return why or ("" if numbered(ob) else "Nothing is traced yet: press Trace Drawing or Carry Strokes first")
+        return why or nothing_traced(ob)
 
     def begin(self, context):
         self._ob, self._frame = context.object, context.scene.frame_current

@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, memo
 from ...blender import strokes as st
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted, joined, stayed
@@ -29,10 +29,9 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
 
     @classmethod
     def lacking(cls, ob, changes: str) -> str:
-        """As `OnDrawing.lacking`. No array is read."""
+        """As `OnDrawing.lacking`."""
         why = super().lacking(ob, changes)
-        handles = (handle for layer in gp.every_layer(ob) for handle, _ in gp.drawings(layer).values()) if not why else ()
-        return why or ("" if any(gp.has(handle, gp.TWEENED) for handle in handles) else "There are no in-betweens")
+        return why or ("" if memo.kept(ob, any_in_between) else "There are no in-betweens")
 
     def run(self, context) -> str:
         ob, active = context.object, self.layers == "ACTIVE"
@@ -41,6 +40,12 @@ class ROTOTOON_OT_clear_in_betweens(Guarded, OnDrawing, bpy.types.Operator):
         self.warn(guard.left_out(st.drawn_layers(ob, active)))
         said = f"{counted(done.removed, 'in-between')} removed" if done.removed or done.kept else "There are no in-betweens"
         return joined(said, stayed("in-between", done.kept))
+
+
+def any_in_between(ob) -> bool:
+    """Whether a layer has in-betweens, also changed ones. Reads no array."""
+    layers = gp.every_layer(ob)
+    return any(gp.has(handle, gp.TWEENED) for kind in (gp.GENERATED, "") for layer in layers for handle in gp.handles(layer, kind))
 
 
 CLASSES = (ROTOTOON_OT_clear_in_betweens,)

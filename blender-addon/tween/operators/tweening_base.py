@@ -54,7 +54,7 @@ class OnKeys(OnDrawing):
         """Called by Blender."""
         if not super().poll(context):
             return False
-        if not any(len(gp.frame_numbers(layer)) > 1 for layer in gp.every_layer(context.object)):
+        if not any(len(layer.frames) > 1 for layer in gp.every_layer(context.object)):
             cls.poll_message_set("Draw on two keys first")
             return False
         return True
