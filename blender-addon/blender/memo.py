@@ -1,7 +1,7 @@
 """Answers about an object's drawings that panels ask for at each redraw, kept until Blender reports a change.
 
 Blender finds the drawing of a frame by a search through all frames of all layers. So a look at every drawing takes a time that grows with the
-square of their number: 0.3 s for 20 layers of 500 frames. A panel asks half a dozen times whether a button has anything to do.
+square of their number: 0.15 s for 20 layers of 500 frames. A panel asks half a dozen times whether a button has anything to do.
 
 Scripts may ask at any moment, also before Blender has noticed a change. In background nothing is kept.
 """
