@@ -29,7 +29,7 @@ def _loaded(*_args) -> None:
 @persistent
 def _saving(path: str = "", *_args) -> None:
     """Makes footage paths relative to the new place of the file, as Blender does with its own paths."""
-    if path and bpy.context.preferences.filepaths.use_relative_paths:
+    if path:
         _rebase(bpy.data.filepath, path)
 
 
@@ -50,9 +50,12 @@ def _rebase(old: str, new: str) -> None:
 
 
 def _move(ob: bpy.types.Object, name: str, old: str, new: str) -> None:
-    """Makes a path that was relative to the file `old` relative to the file `new`; absolute if that is not saved yet."""
+    """Makes a path that was relative to the file `old` relative to the file `new`; absolute if that is not saved yet.
+
+    A path that is not relative becomes so only where Blender's preferences want relative paths.
+    """
     value = getattr(ob.rototoon, name)
-    if not value or (value.startswith("//") and not old):
+    if not value or not (old if value.startswith("//") else footage.wants_relative()):
         return
     absolute = os.path.normpath(os.path.join(os.path.dirname(old), value[2:])) if value[:2] == "//" else value
     based = footage.relative(absolute, new)

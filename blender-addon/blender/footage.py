@@ -270,6 +270,13 @@ def first_frame(source: Source, sequence: Sequence, scene_start: int) -> int:
     return source.frame_of_first + sequence.first - number
 
 
+def wants_relative() -> bool:
+    """Whether Blender's preferences want paths to be relative to the file."""
+    import bpy
+
+    return bpy.context.preferences.filepaths.use_relative_paths
+
+
 def relative(path: str, blend: str) -> str:
     """A path relative to a .blend file if it is at most three folders up, otherwise absolute."""
     if not blend or path.startswith("//"):

@@ -38,8 +38,9 @@ class Shot:
 def assign(ob, shot: Shot) -> None:
     """Gives an object its footage."""
     settings = ob.rototoon
-    settings.pattern = footage.relative(shot.pattern, bpy.data.filepath)
-    settings.movie = footage.relative(shot.movie, bpy.data.filepath) if shot.movie else ""
+    blend = bpy.data.filepath if footage.wants_relative() else ""
+    settings.pattern = footage.relative(shot.pattern, blend)
+    settings.movie = footage.relative(shot.movie, blend) if shot.movie else ""
     settings.first, settings.last = shot.first, shot.last
     settings.width, settings.height = shot.width, shot.height
     settings.fps = shot.fps

@@ -64,3 +64,35 @@ def test_pictures_of_another_name_tell_nothing(tmp_path, copied):
     select(ob)
     bpy.ops.view3d.copybuffer()
     assert pasted(copied).rototoon.pattern == "//../frames/shot_%03d.png"
+
+
+@pytest.fixture
+def absolute():
+    """Blender's preferences want no relative paths."""
+    bpy.context.preferences.filepaths.use_relative_paths = False
+    yield
+    bpy.context.preferences.filepaths.use_relative_paths = True
+
+
+def saved(path, **options):
+    path.parent.mkdir(exist_ok=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), **options)
+
+
+def test_who_wants_no_relative_paths_gets_none(absolute, tmp_path):
+    saved(tmp_path / "home/shot.blend")
+    ob = shots.set_up(tmp_path)
+    pattern = str(tmp_path / "frames/shot_%03d.png")
+    assert ob.rototoon.pattern == pattern
+    saved(tmp_path / "other/shot.blend")
+    assert ob.rototoon.pattern == pattern
+
+
+@pytest.mark.parametrize("remap", [False, True])
+def test_a_relative_path_goes_along_to_another_folder(absolute, tmp_path, remap):
+    ob = shots.set_up(tmp_path)
+    saved(tmp_path / "home/shot.blend")
+    ob.rototoon.pattern = "//../frames/shot_%03d.png"
+    (tmp_path / "other").mkdir()
+    saved(tmp_path / "other/deep/shot.blend", relative_remap=remap)
+    assert ob.rototoon.pattern == "//../../frames/shot_%03d.png"
