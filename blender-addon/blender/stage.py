@@ -53,7 +53,7 @@ def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.
     scene = context.scene
     if match_scene:
         _match(scene, shot)
-    ob = gp.new_object(name, context.collection or scene.collection)
+    ob = gp.new_object(name, collection_of(context))
     assign(ob, shot)
     ob.rototoon.plane = plane
     if plane == "REFERENCE":
@@ -67,6 +67,13 @@ def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.
     ob.show_in_front = True
     _activate(context, ob)
     return ob
+
+
+def collection_of(context) -> bpy.types.Collection:
+    """The collection for new objects: the active one. If it belongs to another file, that of the scene."""
+    active = context.collection
+    others = active is None or active.library is not None or active.override_library is not None
+    return context.scene.collection if others else active
 
 
 def _users(scene) -> list[bpy.types.Object]:
@@ -96,7 +103,7 @@ def _camera(context, shot: Shot, name: str):
     camera = bpy.data.objects.new(data.name, data)
     aside = 1.5 * WIDTH * sum(len(other.data.background_images) > 0 for other in scene.objects if other.type == "CAMERA")
     camera.matrix_world = Matrix.Translation((aside, -DISTANCE, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
-    (context.collection or scene.collection).objects.link(camera)
+    collection_of(context).objects.link(camera)
     # Footage that was seen through the scene's camera is seen through the same camera afterwards.
     for ob in _users(scene):
         if ob.rototoon.plane == "CAMERA" and ob.rototoon.camera is None and not guard.refusal(ob, guard.SETTINGS):
@@ -192,7 +199,7 @@ def _reference(context, shot: Shot, name: str):
     empty.empty_image_offset = (-0.5, -0.5)
     # A little behind the drawing plane, so that strokes are visible.
     empty.matrix_world = Matrix.Translation((0, 0.001, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
-    (context.collection or context.scene.collection).objects.link(empty)
+    collection_of(context).objects.link(empty)
     return empty
 
 
