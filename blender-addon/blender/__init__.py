@@ -11,6 +11,8 @@
 `picture_source`, `picture_mesh`      pictures that follow clips
 `armatures`, `actions`, `masks`       bones, animation curves, masks
 `frames`, `windows`, `preferences`    the current frame, the windows, the settings
+`animated`                            animation curves, and values that are not keyed yet
+`memo`                                answers that panels need not ask for at each redraw
 `errors`                              the error that the artist sees
 ====================================  ==============================================================
 

@@ -12,9 +12,8 @@ import bpy
 import numpy as np
 
 from . import camera as cameras
-from . import footage
+from . import footage, hierarchy
 from . import grease_pencil as gp
-from . import hierarchy
 from .errors import Problem
 from .frames import kept
 

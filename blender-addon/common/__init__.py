@@ -1,5 +1,5 @@
 """What operators of all packages share: base classes (`operators`), work that does not block the window (`jobs`), what operators
-reported (`reports`), and closed lines (`polygons`).
+reported (`reports`), undo meanwhile (`undone`), and closed lines (`polygons`).
 
 May import: `rototoon`, `blender`.
 """

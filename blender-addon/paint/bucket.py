@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..blender import camera, colours, footage
+from ..blender import camera, colours, footage, guard
 from ..blender import grease_pencil as gp
-from ..blender import guard
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import polygons

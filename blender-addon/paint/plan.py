@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..blender import colours, footage
+from ..blender import colours, footage, guard
 from ..blender import grease_pencil as gp
-from ..blender import guard
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common.wording import listed

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from rototoon import tween
 
-from ..blender import grease_pencil as gp
 from ..blender import camera, guard, hierarchy
+from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common.wording import are, listed
 from . import between, captured, layer_pegs, records, sheets, surroundings

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..blender import camera
+from ..blender import camera, guard
 from ..blender import grease_pencil as gp
-from ..blender import guard
 from ..blender import strokes as st
 from ..lines import doubts
 from ..paint import doubts as regions

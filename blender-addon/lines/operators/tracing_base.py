@@ -7,9 +7,9 @@ import bpy
 from ...blender import guard, preferences
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, listed
+from .. import choosing, doubts, properties, tracing
 from .. import drawings as dr
 from .. import plan as pl
-from .. import choosing, doubts, properties, tracing
 
 FRAMES = (
     ("ALL", "All", "All frames of the footage"),
