@@ -503,7 +503,7 @@ def new_object(name: str, collection: bpy.types.Collection) -> bpy.types.Object:
     ob = bpy.data.objects.new(name, data)
     collection.objects.link(ob)
     material = bpy.data.materials.get("Rototoon Ink")
-    if material is None:
+    if material is None or material.grease_pencil is None:
         material = bpy.data.materials.new("Rototoon Ink")
         bpy.data.materials.create_gpencil_data(material)
         material.grease_pencil.color = (0.9, 0.1, 0.35, 1.0)

@@ -48,3 +48,9 @@ def test_an_artists_mesh_material_of_that_name_stays(addon, inked):
     bpy.data.materials.new("Ink Line")
     made = inked.data.materials[addon("blender.strokes").line_material(inked, 0)]
     assert made.grease_pencil is not None and not made.grease_pencil.show_fill
+
+
+def test_a_new_object_has_ink_though_a_mesh_material_has_its_name(addon):
+    bpy.data.materials.new("Rototoon Ink")
+    ob = addon("blender.grease_pencil").new_object("Drawing", bpy.context.collection)
+    assert ob.data.materials[0].grease_pencil is not None
