@@ -62,7 +62,7 @@ def _fixed_end(ob: bpy.types.Object) -> str:
         if ends:
             return (
                 f'On the layer "{layer.name}" a drawing ends by itself before frame {ends[0]}, and Blender would lose the end: go to frame {ends[0]}, '
-                "make the layer active, and press Shift I in Draw Mode (Insert Blank Keyframe)"
+                "make the layer active, and press Shift I in Draw Mode (Insert Blank Keyframe, with Duration 0)"
             )
     return ""
 
