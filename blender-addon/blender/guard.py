@@ -8,7 +8,7 @@
 - **Drawings that several objects share are not written.** The contours of one object would replace those of another, which sees
   them through another camera or has other parts.
 - **Drawings are not written where one of the object ends by itself**, as after *Insert Blank Keyframe* with a duration. When any frame is removed,
-  Blender 5.2 puts the first drawing of the object in the place of such an end, and there it stays.
+  Blender (4.5 to 5.2) puts the first drawing of the object in the place of such an end, and there it stays.
 
 Each refusal names the object or layer, says why, and says what to do. An operator for one layer refuses it (`need_open`). An operator
 for many layers leaves out those that are closed, and says which (`left_out`).
