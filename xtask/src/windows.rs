@@ -19,7 +19,7 @@ use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run,
 
 const PACKAGES: [&str; 6] = ["rustc", "cargo", "rust-src", "gcc-mingw-w64-x86-64-posix", "wine", "wine64"];
 /// The packages whose tests run under Wine.
-const TESTED: [&str; 18] = [
+const TESTED: [&str; 19] = [
     "rototoon",
     "rototoon-base",
     "rototoon-batch",

@@ -93,7 +93,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         check_writable(path)?;
     }
     let conformed = progress::run(arguments::threads(given), |bar| {
-        Ok(pipeline::conform(&document, &home, &new, bar).map_err(|error| explained(error, from))?)
+        pipeline::conform(&document, &home, &new, bar).map_err(|error| explained(error, from))
     })?;
     // The frames of the new footage are inputs too.
     Inputs::default().footage(&conformed.document.scene.footage, &new.folder).check(to)?;

@@ -41,7 +41,7 @@ impl Blocks {
     }
 
     /// Number of blocks.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.columns.len() * self.rows.len()
     }
 }
@@ -59,7 +59,7 @@ impl Look {
     /// The look of a luma on the grid.
     pub fn of(luma: &Raster<f32>, blocks: &Blocks) -> Self {
         let field = directions(luma);
-        let mut values = Vec::with_capacity(blocks.len() * VALUES);
+        let mut values = Vec::with_capacity(blocks.count() * VALUES);
         for row in blocks.rows.clone() {
             for column in blocks.columns.clone() {
                 for place in 0..BLOCK * BLOCK {
@@ -118,7 +118,7 @@ mod tests {
     fn what_is_not_covered_does_not_count() {
         let grid = Grid { width: 64, height: 64, step: 1.0 };
         let blocks = Blocks::within(&grid, [0..32, 0..64]);
-        assert_eq!(blocks.len(), 32);
+        assert_eq!(blocks.count(), 32);
         let (one, other) = (Look::of(&square(&grid, 8, 8, 12), &blocks), square(&grid, 8, 8, 12));
         let mut more = other.clone();
         (40..50).for_each(|x| (40..50).for_each(|y| more.set(x, y, 1.0)));

@@ -147,7 +147,7 @@ fn a_given_placement_stays() {
 #[test]
 fn another_film_is_refused() {
     let old = film(1, &[0, 1, 2, 3], &PLAIN);
-    let other = |x: usize, y: usize, k: usize| if (x / 9 + y / 7 + k) % 3 == 0 { [0.2; 3] } else { [0.8; 3] };
+    let other = |x: usize, y: usize, k: usize| if (x / 9 + y / 7 + k).is_multiple_of(3) { [0.2; 3] } else { [0.8; 3] };
     let pictures = (0..4).map(|k| Raster::from_fn(160, 120, |x, y| other(x, y, k))).collect();
     let error = compare(old.plate(), Film::of(1, pictures).plate(), &Given::default(), &Silent).unwrap_err();
     assert_eq!(error, ConformError::NothingInCommon);
