@@ -21,6 +21,7 @@ from ..blender import strokes as st
 from ..lines import doubts
 from ..lines import drawings as dr
 from ..tween import keys as tween_keys
+from ..tween import moved_keys
 from ..tween import pairs as tween_pairs
 from ..tween import records as tween_records
 from . import drawn, spacings, stroke_fields
@@ -102,6 +103,7 @@ class _Layer:
         contents = {**keys, **self._drawn.made, **self._drawn.other}
         mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
         self._keys = sorted(keys)
+        self._record = moved_keys.followed(gp.find_layer(ob, self._drawn.name), self._record, self._keys).record
         self._fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
         self._pieces: dict[tuple[int | None, int], int] = {}
         self._sheets: dict[int, _Sheet] = {}

@@ -16,7 +16,7 @@ from ..blender import guard, line_materials, marks
 from ..blender.placement import Mapper
 from ..common import jobs
 from ..tween import keys as ks
-from ..tween import pairs, tweening
+from ..tween import moved_keys, pairs, tweening
 from ..tween import records as tween_records
 from ..tween.charts import Choices
 from . import drawings as dr
@@ -237,5 +237,6 @@ def _note(ob, target, record: tween_records.Layer, spans: dict[tuple[int, int], 
         for k in call.spans:
             span = call.sheet.frames[k], call.sheet.frames[k + 1]
             record.spans[span[0]] = tween_records.Span(span[1], call.sheet.digests[k], spans[span], drawn[span], marked=True)
+    moved_keys.note(target, record)
     numbers = [gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1) for handle, _ in gp.drawings(target).values()]
     record.next_track = max(int(each.max(initial=0)) for each in numbers) + 1

@@ -74,12 +74,15 @@ def frames_of(layer, record: records.Layer) -> Frames:
 
 
 def _is_edited(content: st.Content, number: int, record: records.Layer, slots: marks.Slots) -> bool:
-    """Whether the artist has changed an in-between, or moved another one to its frame."""
+    """Whether the artist has changed an in-between. One that lies as it was drawn on another frame was moved there, and is still one."""
     span = next((span for span in record.spans.values() if number in span.sums), None)
-    if span is not None and span.sums[number] != records.checksum(content.point["position"]):
-        return True
-    # An older version may have drawn it anew: then the mark is of an earlier drawing, and the record says so.
-    return (span is None or span.marked) and marks.untouched(content, slots) is False
+    if span is None or span.marked:
+        same = marks.untouched(content, slots)
+        if same is not None or span is None:
+            return same is False
+    # An older version may have drawn it anew: then the mark is of an earlier drawing, and the records say so.
+    drawn = {total for each in record.spans.values() for total in each.sums.values()}
+    return records.checksum(content.point["position"]) not in drawn
 
 
 def digest(content: st.Content) -> bytes:

@@ -1,9 +1,9 @@
 """Records of in-betweens in the file, so that only changed spans are drawn again.
 
 The records are one JSON text on the Grease Pencil data. For each layer it has the next free number of a stroke, and its spans by the
-frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and a
-checksum of the points of each drawing. It shows whether the artist has moved points since, or put another drawing there. Everything else that
-an artist may change shows in the drawing's mark (see `blender.marks`).
+frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and checksums of the
+points of its keys and of each drawing. Those of the keys say where a key is that was moved in time (see `moved_keys`). Whether the artist has
+changed a drawing shows in its mark (see `blender.marks`), and in files of earlier versions in its checksum.
 """
 
 from __future__ import annotations
@@ -31,6 +31,8 @@ class Span:
     """Checksums of the drawings' points by frame."""
     marked: bool = False
     """Whether the drawings have marks (see `blender.marks`). Versions without marks do not write it."""
+    ends: tuple[int, int] | None = None
+    """Checksums of the points of its two keys, by which they are known again on other frames. Earlier versions do not write it."""
 
 
 @dataclass
@@ -46,6 +48,12 @@ class Layer:
             if start <= first and last <= span.last:
                 return span
         return None
+
+    def overlapping(self, first: int, last: int) -> Span | None:
+        """The recorded span that shares most frames with a span."""
+        shared = {start: min(last, span.last) - max(first, start) for start, span in self.spans.items()}
+        best = max(shared, key=lambda start: (shared[start], -start), default=None)
+        return self.spans[best] if best is not None and shared[best] > 0 else None
 
 
 def read(data) -> dict[str, Layer]:
@@ -65,10 +73,15 @@ def _layer(kept: dict[str, Any]) -> Layer:
             Choices.of(each["choices"]),
             {int(frame): int(total) for frame, total in each["sums"].items()},
             bool(each.get("marked", False)),
+            _ends(each.get("ends")),
         )
         for first, each in kept["spans"].items()
     }
     return Layer(int(kept["next"]), spans)
+
+
+def _ends(kept: Any) -> tuple[int, int] | None:
+    return (int(kept[0]), int(kept[1])) if isinstance(kept, list) and len(kept) == 2 else None
 
 
 def write(data, records: dict[str, Layer]) -> None:
@@ -83,6 +96,7 @@ def write(data, records: dict[str, Layer]) -> None:
 def _kept(layer: Layer) -> dict[str, Any]:
     spans = {
         str(first): {"last": s.last, "digest": s.digest, "choices": s.choices.kept(), "sums": s.sums, "marked": s.marked}
+        | ({"ends": list(s.ends)} if s.ends else {})
         for first, s in sorted(layer.spans.items())
     }
     return {"next": layer.next_track, "spans": spans}

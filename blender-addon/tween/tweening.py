@@ -16,7 +16,7 @@ from ..blender import camera, guard, hierarchy
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common.wording import are, listed
-from . import between, captured, layer_pegs, records, sheets, surroundings
+from . import between, captured, layer_pegs, moved_keys, records, sheets, surroundings
 from . import keys as ks
 from . import numbers as tween_numbers
 from .charts import Choices
@@ -53,6 +53,8 @@ class Plan:
     """Whether spans that are up to date are drawn too."""
     stepped: set[tuple[int, int, int]] = field(default_factory=set)
     """Chosen spans that have frames between their keys, but none by their step: first and last frame, and the step."""
+    strays: dict[str, set[int]] = field(default_factory=dict)
+    """By layer the frames of in-betweens that a moved key has left behind, outside of all spans that are drawn."""
 
 
 def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
@@ -62,9 +64,12 @@ def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
     spans: dict[str, dict[tuple[int, int], Choices]] = {}
     for layer in layers:
         name = layer.name
-        record = result.records.setdefault(name, records.Layer())
-        found = result.frames[name] = ks.frames_of(layer, record)
+        before = result.records.get(name, records.Layer())
+        found = result.frames[name] = ks.frames_of(layer, before)
+        followed = moved_keys.followed(layer, before, found.keys)
+        record = result.records[name] = followed.record
         spans[name] = choose(name, found, record)
+        result.strays[name] = followed.strays(found, spans[name])
         # Layers with another carrier get another sheet, in the space of their carrier.
         carrier = hierarchy.carrier(ob, layer)
         wanted = tuple(sorted((span, choices) for span, choices in spans[name].items()) if spans[name] else ())
@@ -223,6 +228,9 @@ def finish(ob, plan: Plan) -> Done:
         for keys, counts in exchanged.items():
             if counts.any():
                 done.exchanged[keys] = done.exchanged.get(keys, 0) + int(counts.max())
+    for name, frames in plan.strays.items():
+        gp.remove_frames(gp.find_layer(ob, name), sorted(frames))
+        moved_keys.note(gp.find_layer(ob, name), plan.records[name])
     records.write(ob.data, plan.records)
     ob.data.update_tag()
     return done
@@ -327,6 +335,7 @@ def clear(ob, layers: Iterable, around: int | None = None) -> Cleared:
         done.removed += len(inside)
         done.kept |= set(edited)
         _forget(record, found.keys, span)
+        moved_keys.note(layer, record)
     records.write(ob.data, kept)
     ob.data.update_tag()
     return done

@@ -62,7 +62,12 @@ class OnKeys(OnDrawing):
 
 def _without_keys(plan: tweening.Plan) -> str:
     """What is said of in-betweens that no longer lie between two keys; empty if there are none."""
-    stale = {frame for found in plan.frames.values() for frame in found.made if not found.keys or not found.keys[0] < frame < found.keys[-1]}
+    stale = {
+        frame
+        for name, found in plan.frames.items()
+        for frame in set(found.made) - plan.strays[name]
+        if not found.keys or not found.keys[0] < frame < found.keys[-1]
+    }
     if not stale:
         return ""
     return f"in-betweens on {listed(sorted(stale))} have no key on one side, and stay as they were: delete them, or draw a key there"

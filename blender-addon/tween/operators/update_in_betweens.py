@@ -16,7 +16,7 @@ class ROTOTOON_OT_update_in_betweens(Tweening, bpy.types.Operator):
 
     def choose(self, _name, found, record):
         spans = zip(found.keys, found.keys[1:])
-        held = {span: record.holding(*span) or _swallowed(record, span) for span in spans}
+        held = {span: record.holding(*span) or _swallowed(record, span) or _left_in(record, span, found) for span in spans}
         return {span: known.choices for span, known in held.items() if known is not None}
 
 
@@ -24,6 +24,12 @@ def _swallowed(record, span: tuple[int, int]):
     """The first recorded span inside a span, where a key between them was removed."""
     inside = [start for start, known in record.spans.items() if span[0] <= start and known.last <= span[1]]
     return record.spans[min(inside)] if inside else None
+
+
+def _left_in(record, span: tuple[int, int], found):
+    """The recorded span with most frames in a span that has in-betweens and neither holds nor is held: its keys were moved and redrawn, or an
+    earlier version recorded it."""
+    return record.overlapping(*span) if any(span[0] < frame < span[1] for frame in found.made) else None
 
 
 CLASSES = (ROTOTOON_OT_update_in_betweens,)
