@@ -71,6 +71,9 @@ NEXT = "rototoon_next"
 decision."""
 BEFORE = "rototoon_before"
 """The same for the key before. Two strokes are a pair if the `NEXT` of one is the `BEFORE` of the other on the next key."""
+SIDES = "rototoon_sides"
+"""On which of its two keys a stroke of an in-between has a counterpart of its number: 1 for the earlier one, 2 for the later one, added; 0 for a
+stroke that was drawn since. A breakdown that was an in-between keeps it."""
 
 TYPES = {
     KEY_POINT: ("INT", "CURVE"),
@@ -84,6 +87,7 @@ TYPES = {
     TWEENED: ("BOOLEAN", "CURVE"),
     NEXT: ("INT", "CURVE"),
     BEFORE: ("INT", "CURVE"),
+    SIDES: ("INT", "CURVE"),
     "fill_opacity": ("FLOAT", "CURVE"),
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),

@@ -20,8 +20,8 @@ from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..lines import doubts
 from ..lines import drawings as dr
+from ..tween import breakdowns, moved_keys
 from ..tween import keys as tween_keys
-from ..tween import moved_keys
 from ..tween import pairs as tween_pairs
 from ..tween import records as tween_records
 from . import drawn, spacings, stroke_fields
@@ -103,7 +103,11 @@ class _Layer:
         contents = {**keys, **self._drawn.made, **self._drawn.other}
         mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
         self._keys = sorted(keys)
-        self._record = moved_keys.followed(gp.find_layer(ob, self._drawn.name), self._record, self._keys).record
+        layer = gp.find_layer(ob, self._drawn.name)
+        self._record = moved_keys.followed(layer, self._record, self._keys).record
+        for frame, marks in breakdowns.passed_on(layer, self._keys, self._adopted).items():
+            for name, values in marks.values().items():
+                keys[frame].set_strokes(name, values)
         self._fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
         self._pieces: dict[tuple[int | None, int], int] = {}
         self._sheets: dict[int, _Sheet] = {}
@@ -114,8 +118,10 @@ class _Layer:
 
     def _adopt(self, layer) -> None:
         """Counts in-betweens that the artist has changed as the artist's drawings."""
+        self._adopted: set[int] = set()
         if self._drawn.other:
-            for frame in self._drawn.other.keys() & set(tween_keys.frames_of(layer, self._record).edited):
+            self._adopted = self._drawn.other.keys() & set(tween_keys.frames_of(layer, self._record).edited)
+            for frame in self._adopted:
                 self._drawn.keys[frame] = self._drawn.other.pop(frame)
 
     def _numbers(self, frame: int, content: st.Content, strokes) -> dict[int, int]:

@@ -91,7 +91,8 @@ def _cleared(ob, name: str, target) -> set[int]:
     """
     kept = tween_records.read(ob.data)
     record = kept.get(name, tween_records.Layer())
-    tweening.adopt(target, ks.frames_of(target, record).edited)
+    found = ks.frames_of(target, record)
+    tweening.adopt(target, found, found.edited)
     (layer,) = dr.read(ob, [name])
     dr.keep(ob, layer)
     between = {frame for span in record.spans.values() for frame in span.sums if frame in layer.other}

@@ -15,8 +15,8 @@ from rototoon import tween
 from ..blender import grease_pencil as gp
 from ..blender import marks
 from ..blender import strokes as st
+from . import breakdowns, records
 from . import keys as ks
-from . import records
 from .sheets import Laid, Sheet
 
 _HANDLES = ("handle_left", "handle_right")
@@ -42,6 +42,8 @@ class Block:
     shares: np.ndarray
     positions: np.ndarray
     """(F, N, 3)."""
+    held: bool = False
+    """Whether all frames show the earlier key."""
     exchanged: tuple[int, int] = (0, 0)
     """Number of strokes of the earlier and of the later key that are exchanged half way."""
     ends: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
@@ -131,7 +133,10 @@ def blocks(sheet: Sheet, laid: Laid, spans: list[int], drawn: tween.InBetweens) 
         sizes = np.diff(bounds[mine.start : mine.stop + 1])
         span_of = _Span(sheet, laid, span, strokes[mine], sizes, indices[own], weights[own], points, opaque)
         share = shares[frames[number] : frames[number + 1]]
-        result += [block for layer in range(len(sheet.layers)) if (block := span_of.block(layer, share)) is not None]
+        mine = [block for layer in range(len(sheet.layers)) if (block := span_of.block(layer, share)) is not None]
+        for block in mine:
+            block.held = bool(drawn.held[number])
+        result += mine
     return result
 
 
@@ -341,4 +346,5 @@ def _begin(handle, block: Block, tracks: np.ndarray) -> None:
             domain = "POINT" if name in block.content.point else "CURVE"
             gp.make(handle, name, block.content.kinds[name], domain)
     gp.put(handle, gp.TRACK, tracks)
+    gp.put(handle, gp.SIDES, breakdowns.sides(block.stands, block.held))
     gp.put(handle, gp.TWEENED, np.ones(count, bool))

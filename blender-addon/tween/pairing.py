@@ -16,7 +16,7 @@ from ..blender import guard, stroke_lines
 from ..blender import strokes as st
 from ..common.wording import counted
 from . import keys as ks
-from . import pairs, records, sheets, tweening
+from . import breakdowns, pairs, records, sheets, tweening
 from .charts import Choices
 
 REACH = 14.0
@@ -95,6 +95,8 @@ class Pairing:
         for layer in layers:
             record = kept.get(layer.name, records.Layer())
             found = ks.frames_of(layer, record)
+            # In-betweens that the artist changed are keys here too.
+            breakdowns.write(layer, breakdowns.passed_on(layer, found.keys, found.edited))
             span = ks.around([key for key in found.keys if key not in found.blank], frame)
             if span is not None:
                 self._layers.append(self._laid(layer, span))

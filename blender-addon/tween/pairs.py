@@ -1,4 +1,5 @@
-"""Pairs of strokes that are given: those that the artist made, and those of carried strokes. The library finds the others.
+"""Pairs of strokes that are given: those that the artist made, those of breakdowns that were in-betweens, and those of carried strokes. The
+library finds the others.
 
 The two strokes of an artist's pair carry the same number, one as `NEXT`, the other as `BEFORE`. So it survives when a stroke is moved,
 reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing.
@@ -13,6 +14,8 @@ from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 
 NONE = -1
+EARLIER, LATER = 1, 2
+"""On which key a stroke of an in-between has a counterpart: the values of `SIDES`."""
 
 
 def between(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
@@ -30,14 +33,33 @@ def between(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
 
 
 def given(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
-    """As `between`, with the strokes that are the same since they were traced or carried. A decision of the artist wins."""
+    """As `between`, with the strokes that are the same since they were drawn as in-betweens, traced or carried. A decision of the artist wins."""
     found = between(earlier, later)
+    found += _same(earlier, later, [{pair[side] for pair in found} for side in (0, 1)])
     decided = [{pair[side] for pair in found} for side in (0, 1)]
     places = {number: j for j, number in reversed(list(enumerate(carried(later)))) if number and j not in decided[1]}
     for i, number in enumerate(carried(earlier)):
         if number in places and i not in decided[0]:
             # A copied stroke has its original's number; the second one is matched.
             found.append((i, places.pop(number)))
+    return found
+
+
+def _same(earlier: st.Content, later: st.Content, decided: list[set[int]]) -> list[tuple[int, int]]:
+    """Strokes with the same number, where one of the two drawings was an in-between: see `breakdowns`."""
+    sides = earlier.strokes(gp.SIDES) & LATER, later.strokes(gp.SIDES) & EARLIER
+    if not (sides[0].any() or sides[1].any()):
+        return []
+    places: dict[int, list[int]] = {}
+    for j, number in enumerate(later.strokes(gp.TRACK).tolist()):
+        if number > 0 and j not in decided[1]:
+            places.setdefault(number, []).append(j)
+    found = []
+    for i, number in enumerate(earlier.strokes(gp.TRACK).tolist()):
+        j = next((j for j in places.get(number, ()) if sides[0][i] or sides[1][j]), None) if i not in decided[0] else None
+        if j is not None:
+            found.append((i, j))
+            del places[number]
     return found
 
 

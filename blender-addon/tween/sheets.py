@@ -21,8 +21,8 @@ from rototoon import Strokes, tween
 from ..blender import colours, drawn_plane
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
+from . import breakdowns, pairs
 from . import keys as ks
-from . import pairs
 from .charts import Choices
 
 SIZE = 1000.0
@@ -149,11 +149,16 @@ class Sheet:
         """For each layer the pairs that need not be found: the artist's, and those of carried strokes."""
         return [pairs.given(a, b) for a, b in zip(self.contents[span], self.contents[span + 1])]
 
-    def read(self, ob) -> None:
-        """Reads the drawings for the wanted spans, and makes the digest of each span."""
+    def read(self, ob, marks: dict[str, dict[int, breakdowns.Marks]]) -> None:
+        """Reads the drawings for the wanted spans, and makes the digest of each span. `marks` are those that `finish` will write, by layer and
+        frame."""
         drawings = [gp.drawings(gp.find_layer(ob, name)) for name in self.layers]
         for key in sorted({key for span in self.wanted for key in self.around(span)}):
             self.contents[key] = [st.read(each[self.frames[key]][0]) for each in drawings]
+            for name, content in zip(self.layers, self.contents[key]):
+                if self.frames[key] in marks[name]:
+                    for attribute, values in marks[name][self.frames[key]].values().items():
+                        content.set_strokes(attribute, values)
         sums = {key: b"".join(map(ks.digest, each)) for key, each in self.contents.items()}
         materials = colours.palette(ob).tobytes()
         for span, choices in self.wanted.items():

@@ -16,7 +16,7 @@ from ..blender import camera, guard, hierarchy
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common.wording import are, listed
-from . import between, captured, layer_pegs, moved_keys, records, sheets, surroundings
+from . import between, breakdowns, captured, layer_pegs, moved_keys, records, sheets, surroundings
 from . import keys as ks
 from . import numbers as tween_numbers
 from .charts import Choices
@@ -53,6 +53,8 @@ class Plan:
     """Whether spans that are up to date are drawn too."""
     stepped: set[tuple[int, int, int]] = field(default_factory=set)
     """Chosen spans that have frames between their keys, but none by their step: first and last frame, and the step."""
+    marks: dict[str, dict[int, breakdowns.Marks]] = field(default_factory=dict)
+    """By layer and frame the marks of in-betweens that are keys now, and of the keys around them."""
     strays: dict[str, set[int]] = field(default_factory=dict)
     """By layer the frames of in-betweens that a moved key has left behind, outside of all spans that are drawn."""
 
@@ -66,6 +68,7 @@ def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
         name = layer.name
         before = result.records.get(name, records.Layer())
         found = result.frames[name] = ks.frames_of(layer, before)
+        result.marks[name] = breakdowns.passed_on(layer, found.keys, found.edited)
         followed = moved_keys.followed(layer, before, found.keys)
         record = result.records[name] = followed.record
         spans[name] = choose(name, found, record)
@@ -111,7 +114,7 @@ def _plan_group(
         sheet = sheets.Sheet(names, run, plane, mine, choices)
         surroundings.prepare(ob, sheet, next(_drawn(ob, names, run, to_sheet)))
         captured.put_on(ob, sheet, parts)
-        sheet.read(ob)
+        sheet.read(ob, result.marks)
         for k in [k for k in mine if not result.again and _is_current(sheet, k, result)]:
             del sheet.wanted[k]
             result.current += 1
@@ -208,7 +211,7 @@ def finish(ob, plan: Plan) -> Done:
     for name, found in plan.frames.items():
         done.keys += len(found.edited)
         done.key_frames |= set(found.edited)
-        adopt(gp.find_layer(ob, name), found.edited)
+        adopt(gp.find_layer(ob, name), found, found.edited)
     pairs: dict[str, dict[int, list[tuple[int, int]]]] = {}
     for call in plan.calls:
         collect_pairs(call, pairs)
@@ -236,8 +239,9 @@ def finish(ob, plan: Plan) -> Done:
     return done
 
 
-def adopt(layer, frames: Iterable[int]) -> None:
-    """Makes in-betweens the artist's keys, as breakdowns."""
+def adopt(layer, found: ks.Frames, frames: Iterable[int]) -> None:
+    """Makes in-betweens the artist's keys, as breakdowns. Their strokes stay paired with those of the keys around."""
+    breakdowns.write(layer, breakdowns.passed_on(layer, found.keys, frames))
     drawings = gp.drawings(layer)
     for frame in frames:
         handle = drawings[frame][0]
@@ -330,7 +334,7 @@ def clear(ob, layers: Iterable, around: int | None = None) -> Cleared:
             continue
         inside = [number for number in found.made if span[0] <= number <= span[1]]
         edited = [number for number in found.edited if span[0] <= number <= span[1]]
-        adopt(layer, edited)
+        adopt(layer, found, edited)
         gp.remove_frames(layer, inside)
         done.removed += len(inside)
         done.kept |= set(edited)
