@@ -161,10 +161,10 @@ class _Layer:
         found = []
         for frame, after in itertools.zip_longest(self._keys, self._keys[1:]):
             fields = dict(self._further.of_drawing(frame - self._offset))
-            # As Update In-betweens does: both halves of a span that a new key divides have its choices.
-            span = self._record.holding(frame, after) if after is not None else None
-            if span is not None:
-                spacing = spacings.written(span.choices, frame, after, fields.get("spacing", "smooth"))
+            # As Update In-betweens does: a span that a new key divides passes its choices on, and its spacing is divided.
+            choices = self._record.choices(frame, after) if after is not None else None
+            if choices is not None:
+                spacing = spacings.written(choices, frame, after, fields.get("spacing", "smooth"))
                 fields = {**fields, "spacing": spacing}
             if fields.get("spacing") in ("smooth", None):
                 fields.pop("spacing", None)

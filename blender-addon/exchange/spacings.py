@@ -8,7 +8,7 @@ from typing import Any
 
 from ..blender.errors import Problem
 from ..tween import charts
-from ..tween.charts import Choices
+from ..tween.charts import WHOLE, Choices
 
 _NAMED = {"smooth", "linear", "ease_in", "ease_out", "ease_in_out", "cosine", "bounce"}
 
@@ -40,8 +40,11 @@ def written(chosen: Choices, first: int, last: int, before: Any) -> Any:
     """The spacing of choices in a document; `before` if it is the same. `None` for smooth."""
     if replace(choices(before, first, last, chosen.frames(first, last)), step=chosen.step) == replace(Choices(), **_only_spacing(chosen)):
         return before
+    if chosen.part != WHOLE:
+        # What a breakdown has left of a spacing is a list, which anybody can read and change.
+        return chosen.part_shares(first, last) or None
     return None if chosen.spacing == "SMOOTH" else chosen.written(first, last)
 
 
 def _only_spacing(chosen: Choices) -> dict[str, Any]:
-    return {name: getattr(chosen, name) for name in ("spacing", "chart", "bounces", "curve", "step")}
+    return {name: getattr(chosen, name) for name in ("spacing", "chart", "bounces", "curve", "step", "part")}

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from itertools import pairwise
 from typing import Any
 
 from ..blender.errors import Problem
 from ..common.wording import counted
+from . import spacing_parts
 
 SPACINGS = (
     (
@@ -34,6 +37,8 @@ PEGS = (
     ("LAYERS", "Layers", "Each layer moves as one, and hangs on its group"),
 )
 
+WHOLE = (0.0, 1.0)
+
 
 @dataclass(frozen=True)
 class Choices:
@@ -55,6 +60,8 @@ class Choices:
     follow: bool = False
     """Whether strokes follow the captured contours on which they lie. It is false in older files, which do not have this
     choice."""
+    part: tuple[float, float] = WHOLE
+    """From when to when of the spacing a span has, if a breakdown divided its span: see `spacing_parts`."""
 
     def kept(self) -> dict[str, Any]:
         """The form in the file."""
@@ -67,6 +74,9 @@ class Choices:
         known = {name: value for name, value in kept.items() if name in names}
         if "curve" in known:
             known["curve"] = tuple((float(time), float(share)) for time, share in known["curve"])
+        if "part" in known:
+            start, end = known["part"]
+            known["part"] = (float(start), float(end))
         return cls(**known)
 
     def frames(self, first: int, last: int) -> list[int]:
@@ -75,6 +85,32 @@ class Choices:
 
     def written(self, first: int, last: int) -> Any:
         """The spacing from one key to the next, as the library takes it."""
+        whole = self._whole(first, last)
+        return whole if self.part == WHOLE else spacing_parts.part(whole, *self.part, last - first)
+
+    def part_shares(self, first: int, last: int) -> list[float]:
+        """The shares of a part of a spacing on the drawings between two keys."""
+        written, length = self.written(first, last), last - first
+        places = [[0.0, 0.0], *written["curve"]] if isinstance(written, dict) else [[step / length, step / length] for step in range(length)]
+        return [round(places[(frame - first) * (len(places) // length)][1], 6) for frame in self.frames(first, last)]
+
+    def divided(self, first: int, last: int, span: tuple[int, int]) -> Choices:
+        """The choices for a span inside the one from `first` to `last`, which has these. Movements that know all keys, and even ones, need no part."""
+        if span == (first, last) or self.spacing in ("SMOOTH", "LINEAR"):
+            return self
+        start, end = ((frame - first) / (last - first) for frame in span)
+        whole = self._timed(first, last) if self.part == WHOLE else self
+        begin, length = self.part[0], self.part[1] - self.part[0]
+        return replace(whole, part=(begin + length * start, begin + length * end))
+
+    def _timed(self, first: int, last: int) -> Choices:
+        """The same, where the times of a chart do not depend on the frames of the span."""
+        frames = self.frames(first, last)
+        if self.spacing != "CHART" or not frames or frames[-1] + self.step == last:
+            return self
+        return replace(self, spacing="CURVE", chart="", curve=tuple(map(tuple, self._whole(first, last)["curve"])))
+
+    def _whole(self, first: int, last: int) -> Any:
         if self.spacing == "BOUNCE":
             return {"bounce": self.bounces}
         if self.spacing == "CURVE":
@@ -83,7 +119,7 @@ class Choices:
             return self.spacing.lower()
         shares = percentages(self.chart)
         frames = self.frames(first, last)
-        if len(shares) == len(frames):
+        if len(shares) == len(frames) and self.part == WHOLE:
             times = [(frame - first) / (last - first) for frame in frames]
         else:
             times = [(k + 1) / (len(shares) + 1) for k in range(len(shares))]
@@ -110,6 +146,16 @@ class Choices:
             "leaving": self.leaving.lower(),
             "rest": self.rest,
         }
+
+
+def joined(parts: Sequence[Choices]) -> Choices:
+    """The choices of neighbouring spans between which a breakdown was removed: the spacing that it had divided, otherwise that of the first one."""
+    first, last = parts[0], parts[-1]
+    meet = all(abs(one.part[1] - other.part[0]) < 1e-9 for one, other in pairwise(parts))
+    if not meet or any(replace(each, part=WHOLE) != replace(first, part=WHOLE) for each in parts):
+        return replace(first, part=WHOLE)
+    start, end = first.part[0], last.part[1]
+    return replace(first, part=WHOLE if start < 1e-9 and end > 1 - 1e-9 else (start, end))
 
 
 def places(text: str) -> tuple[tuple[float, float], ...]:

@@ -49,6 +49,13 @@ class Layer:
                 return span
         return None
 
+    def choices(self, first: int, last: int) -> Choices | None:
+        """The choices of a span that is recorded, or that a key divides. Its spacing is divided with it."""
+        start = next((start for start, span in self.spans.items() if start <= first and last <= span.last), None)
+        if start is None:
+            return None
+        return self.spans[start].choices.divided(start, self.spans[start].last, (first, last))
+
     def overlapping(self, first: int, last: int) -> Span | None:
         """The recorded span that shares most frames with a span."""
         shared = {start: min(last, span.last) - max(first, start) for start, span in self.spans.items()}

@@ -107,7 +107,7 @@ def _plan_group(
         if not mine:
             continue
         usual = next(iter(mine.values()))
-        choices = [mine.get(k) or _kept(record, run[k], run[k + 1]) or usual for k in range(len(run) - 1)]
+        choices = [mine.get(k) or record.choices(run[k], run[k + 1]) or usual for k in range(len(run) - 1)]
         matrices = [camera.need_size(ob, hierarchy.in_carrier(gp.find_layer(ob, name))) for name in names]
         to_sheet = [np.linalg.inv(matrices[0]) @ matrix for matrix in matrices]
         plane = sheets.Plane.of(_drawn(ob, names, run, to_sheet), to_sheet)
@@ -133,11 +133,6 @@ def _runs(found: ks.Frames) -> list[list[int]]:
         else:
             runs[-1].append(frame)
     return [run for run in runs if len(run) > 1]
-
-
-def _kept(record: records.Layer, first: int, last: int) -> Choices | None:
-    span = record.holding(first, last)
-    return span.choices if span is not None else None
 
 
 def _is_current(sheet: sheets.Sheet, k: int, result: Plan) -> bool:
@@ -356,7 +351,7 @@ def _forget(record: records.Layer, keys: list[int], cleared: tuple[float, float]
         for a, b in zip(keys, keys[1:]):
             own = {frame: total for frame, total in left.items() if a < frame < b}
             if own:
-                record.spans[a] = records.Span(b, "", known.choices, own, known.marked)
+                record.spans[a] = records.Span(b, "", known.choices.divided(start, known.last, (a, b)), own, known.marked)
 
 
 def nothing_to_draw(result: Plan) -> Problem:

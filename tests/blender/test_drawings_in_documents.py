@@ -174,7 +174,8 @@ def test_an_in_between_that_the_artist_changed_goes_out_as_a_drawing(addon, film
     before = {frame: ls.strokes(addon, ob, "Lines", frame) for frame in (3, 4)}
     document, back = again(tmp_path / "changed.json")
     assert kinds(addon, ob, "Lines")[3] == MADE, "the layer is left as it is"
-    assert [(each["frame"], each.get("spacing")) for each in document["drawings"]] == [(1, "ease_in"), (3, "ease_in"), (6, None)]
+    # The share of the way was the square of the time.
+    assert [(each["frame"], each.get("spacing")) for each in document["drawings"]] == [(1, [0.25]), (3, [0.238095, 0.571429]), (6, None)]
     assert [each["frame"] for each in document["in_betweens"]] == [2, 4, 5]
     assert [(each["frame"], each["next"]) for each in document["matches"]] == [(1, 3), (3, 6)]
     assert kinds(addon, back, "Lines") == {**dict.fromkeys(range(1, 7), MADE), 1: KEY, 3: KEY, 6: KEY}

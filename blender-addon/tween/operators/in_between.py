@@ -1,10 +1,12 @@
 """In-between: draws the frames between keys."""
 
+from dataclasses import replace
+
 import bpy
 
 from ...blender import strokes as st
 from .. import charts, spacing_curve
-from ..charts import Choices
+from ..charts import WHOLE, Choices
 from .tweening_base import LAYERS, SCOPES, Scoped, Tweening
 
 
@@ -130,9 +132,18 @@ class ROTOTOON_OT_in_between(Scoped, Tweening, bpy.types.Operator):
             held = record.holding(*spans[0]) if spans else None
             every = zip(found.keys, found.keys[1:])
             spans = [span for span in every if span in spans or (held is not None and record.holding(*span) is held)]
-        for span in spans:
-            self._choices.need_chart(*span)
-        return dict.fromkeys(spans, self._choices)
+        chosen = {span: self._divided(span, found, record) or self._choices for span in spans}
+        for span, choices in chosen.items():
+            if choices.part == WHOLE:
+                choices.need_chart(*span)
+        return chosen
+
+    def _divided(self, span, found, record) -> Choices | None:
+        """The part of the spacing for a span beside an in-between that the artist changed, if its span was drawn with the same choices."""
+        held = record.holding(*span)
+        if held is None or not set(span) & set(found.edited) or replace(held.choices, part=WHOLE) != self._choices:
+            return None
+        return record.choices(*span)
 
 
 CLASSES = (ROTOTOON_OT_in_between,)

@@ -54,8 +54,7 @@ class ROTOTOON_OT_suggest_breakdown(OnKeys, Scoped, Long, bpy.types.Operator):
 
     def _choose(self, name, found, record):
         usual = Choices(follow=True)
-        kept = {span: record.holding(*span) for span in self.in_scope(name, found)}
-        return {span: usual if held is None else held.choices for span, held in kept.items()}
+        return {span: record.choices(*span) or usual for span in self.in_scope(name, found)}
 
     def finish(self, _context, work) -> str:
         found = work.result

@@ -2,6 +2,8 @@
 
 import bpy
 
+from .. import charts
+from ..charts import Choices
 from .tweening_base import Tweening
 
 
@@ -16,20 +18,21 @@ class ROTOTOON_OT_update_in_betweens(Tweening, bpy.types.Operator):
 
     def choose(self, _name, found, record):
         spans = zip(found.keys, found.keys[1:])
-        held = {span: record.holding(*span) or _swallowed(record, span) or _left_in(record, span, found) for span in spans}
-        return {span: known.choices for span, known in held.items() if known is not None}
+        held = {span: record.choices(*span) or _swallowed(record, span) or _left_in(record, span, found) for span in spans}
+        return {span: choices for span, choices in held.items() if choices is not None}
 
 
-def _swallowed(record, span: tuple[int, int]):
-    """The first recorded span inside a span, where a key between them was removed."""
-    inside = [start for start, known in record.spans.items() if span[0] <= start and known.last <= span[1]]
-    return record.spans[min(inside)] if inside else None
+def _swallowed(record, span: tuple[int, int]) -> Choices | None:
+    """The choices of the recorded spans inside a span, where keys between them were removed."""
+    inside = [known.choices for start, known in sorted(record.spans.items()) if span[0] <= start and known.last <= span[1]]
+    return charts.joined(inside) if inside else None
 
 
-def _left_in(record, span: tuple[int, int], found):
-    """The recorded span with most frames in a span that has in-betweens and neither holds nor is held: its keys were moved and redrawn, or an
-    earlier version recorded it."""
-    return record.overlapping(*span) if any(span[0] < frame < span[1] for frame in found.made) else None
+def _left_in(record, span: tuple[int, int], found) -> Choices | None:
+    """The choices of the recorded span with most frames in a span that has in-betweens and neither holds nor is held: its keys were moved and
+    redrawn, or an earlier version recorded it."""
+    known = record.overlapping(*span) if any(span[0] < frame < span[1] for frame in found.made) else None
+    return known.choices if known is not None else None
 
 
 CLASSES = (ROTOTOON_OT_update_in_betweens,)
