@@ -3,6 +3,8 @@
 The visible parts of a cut stroke replace it. Each part has all attributes of the stroke, the stroke's number (`rototoon_stroke`)
 and its interval of the stroke (`rototoon_interval`). A filled stroke must keep its outline for the fill. It stays with a transparent
 line, and its visible parts are added above it without a fill.
+
+Limits: the artist's drawings are cut too, and only undo brings their lines back. In-betweens that are drawn from them later come from what is left.
 """
 
 from __future__ import annotations
@@ -292,6 +294,16 @@ def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None
     for each in np.unique(index[lines]):
         index[lines & (index == each)] = st.line_material(ob, int(each))
     result.set_strokes("material_index", index)
+
+
+def own(ob, cuts: list[Cut], in_place: bool) -> dict[str, set[int]]:
+    """By layer the frames of the artist's drawings that `write` will cut. A generated copy of one is not it."""
+    found: dict[str, set[int]] = {}
+    for each in cuts:
+        if each.changed and (in_place or each.frame == each.source):
+            found.setdefault(each.layer, set()).add(each.source)
+    kinds = {name: gp.drawings(gp.find_layer(ob, name)) for name in found}
+    return {name: mine for name, frames in found.items() if (mine := {frame for frame in frames if kinds[name][frame][1] != gp.GENERATED})}
 
 
 def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:

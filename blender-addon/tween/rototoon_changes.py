@@ -1,12 +1,13 @@
 """In-betweens that Rototoon itself changes after it has drawn them: hidden lines are cut, strokes are fitted.
 
 That is no change of the artist. So such drawings stay in-betweens: their marks and their checksums follow, and a later
-Update In-betweens may draw them anew.
+Update In-betweens may draw them anew. It draws from the keys as they are then. A fitted key is as good as before, so the in-betweens can be fitted
+again. A cut key has lost lines.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -24,13 +25,23 @@ class Kept:
     frames: dict[str, set[int]] = field(default_factory=dict)
     """By layer."""
 
+    def among(self, changed: dict[str, set[int]]) -> int:
+        """How many of the drawings that were changed, by layer, are in-betweens."""
+        return sum(len(frames & self.frames.get(name, set())) for name, frames in changed.items())
+
     def said(self, changed: dict[str, set[int]]) -> str:
-        """What that means, for the drawings that were changed, by layer; empty without in-betweens."""
-        count = sum(len(frames & self.frames.get(name, set())) for name, frames in changed.items())
+        """What that means for in-betweens from keys that are as good as before; empty without in-betweens."""
+        count = self.among(changed)
         if not count:
             return ""
         them = "it" if count == 1 else "them"
         return f"{counted(count, 'in-between')} among them: do this again after Update In-betweens draws {them} anew"
+
+
+def has_own_keys(ob, layers: Iterable) -> bool:
+    """Whether one of the layers has in-betweens, which are drawn from the artist's keys. No array is read."""
+    known = records.read(ob.data)
+    return any(layer.name in known and known[layer.name].spans for layer in layers)
 
 
 @contextmanager

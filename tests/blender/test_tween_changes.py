@@ -89,13 +89,32 @@ def test_what_rototoon_itself_changes_stays_an_in_between(addon, change):
     assert change(addon, ob) == {"FINISHED"}
     changed = [frame for frame, old in before.items() if not np.array_equal(places(addon, ob, frame), old)]
     assert changed and f"{len(changed)} in-between" in (text := said(addon).text)
-    assert text.endswith("among them: do this again after Update In-betweens draws them anew")
+    # Fitted keys are as good as before. Cut keys have lost lines.
+    assert text.endswith("among them: do this again after Update In-betweens draws them anew") == (change is fitted)
     assert all(frames(addon, ob)[frame] == "GENERATED" for frame in changed)
     move(addon, ob, 9, by=0.4)
     assert bpy.ops.rototoon.update_in_betweens() == {"FINISHED"}
     assert said(addon).text == "7 in-betweens in 1 span"
     assert bpy.ops.rototoon.clear_in_betweens() == {"FINISHED"}
     assert said(addon).text == "7 in-betweens removed" and list(frames(addon, ob)) == [1, 9]
+
+
+def test_own_keys_that_are_cut_are_a_warning_with_their_frames(addon):
+    ob = covered(addon)
+    without_hidden(addon, ob)
+    report = said(addon)
+    assert report.kind == "WARNING" and "do this again" not in report.text
+    assert report.text.startswith("5 hidden lines on 5 drawings, 4 in-betweens among them"), report.text
+    (warning,) = report.warnings
+    assert warning.startswith("1 drawing of yours was cut on frame 1, and in-betweens that are drawn anew come from what is left"), warning
+
+
+def test_own_drawings_without_in_betweens_that_are_cut_are_said(addon):
+    ob = covered(addon)
+    bpy.ops.rototoon.clear_in_betweens()
+    without_hidden(addon, ob)
+    report = said(addon)
+    assert report.kind == "INFO" and report.text.endswith("1 drawing of yours among them, on frame 1"), report.text
 
 
 def test_what_the_artist_changed_before_stays_the_artists(addon):

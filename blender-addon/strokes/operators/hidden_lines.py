@@ -9,17 +9,21 @@ from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted, joined
+from ...common.wording import counted, joined, listed
 from ...tween import rototoon_changes
 from .. import hidden
+
+
+BEFORE = "In-betweens that are drawn later come from the cut keys. Finish them first, or work on a copy of the object"
 
 
 class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     bl_idname = "rototoon.hidden_lines"
     bl_label = "Remove Hidden Lines"
     bl_description = (
-        "Cut lines exactly where filled strokes in front cover them, on the frames that you choose. Locked and "
-        "hidden layers are not cut"
+        "Cut lines exactly where filled strokes in front cover them, on the frames that you choose, in your own drawings too: only undo "
+        "brings the lines back. Do it last, or on a copy of the object: in-betweens that are drawn later come from the cut drawings. Locked "
+        "and hidden layers are not cut"
     )
     bl_options = {"REGISTER", "UNDO"}
 
@@ -56,6 +60,15 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         ),
     )
 
+    def invoke(self, context, event):
+        """Called by Blender. It asks first where in-betweens depend on drawings that it would cut."""
+        ob = context.object
+        if bpy.app.background or context.window is None or not rototoon_changes.has_own_keys(ob, st.editable_layers(ob, active=False)):
+            return super().invoke(context, event)
+        # The answer calls `execute`.
+        self._picked = True
+        return context.window_manager.invoke_confirm(self, event, title="Cut the keys of in-betweens?", message=BEFORE, confirm_text="Cut")
+
     def begin(self, context):
         self._ob, scene = context.object, context.scene
         self._frames = [scene.frame_current]
@@ -88,13 +101,28 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
+        own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
         with rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
         if not drawings:
             return "Nothing is hidden"
+        return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
+
+    def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
+        """Which of the cut drawings are the artist's, and what that means for in-betweens."""
         cut = {layer: {each.source for each in self._cuts if each.changed and each.layer == layer} for layer in made.frames}
-        return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", made.said(cut))
+        between, mine = made.among(cut), sum(map(len, own.values()))
+        frames = sorted(set().union(*own.values()))
+        on = f"on frame{'' if len(frames) == 1 else 's'} {listed(frames)}" if frames else ""
+        if mine and own.keys() & made.frames.keys():
+            self.warn(
+                f"{counted(mine, 'drawing')} of yours {'was' if mine == 1 else 'were'} cut {on}, and in-betweens that are drawn anew come from what is left: "
+                "undo this before you change a key or press Update In-betweens, or work on a copy of the object"
+            )
+            on = ""
+        said = f"{counted(between, 'in-between')} among them" if between else ""
+        return joined(said, f"{counted(mine, 'drawing')} of yours among them, {on}" if on else "")
 
 
 CLASSES = (ROTOTOON_OT_hidden_lines,)
