@@ -1,7 +1,8 @@
 """Drawings that a document gives, as a layer of lines: the artist's, traced ones and in-betweens.
 
 Drawings of the artist become keys. Traced drawings and in-betweens are generated, as Trace Drawing and In-between write them, so that a
-change by the artist is noticed. What the artist has on the layer already stays; generated drawings are replaced.
+change by the artist is noticed. What the artist has on the layer already stays. Traced drawings are replaced. In-betweens are replaced where the
+document draws: on its frames, and between two of its drawings that come in. The others lie between drawings that stay, and stay with them.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, line_materials, marks
+from ..blender import strokes as st
 from ..blender.placement import Mapper
 from ..common import jobs
 from ..tween import keys as ks
@@ -59,13 +61,19 @@ class Done:
     """Frames with a drawing of the artist's own, which was not replaced by that of the document."""
     left: int = 0
     """Number of in-betweens that do not lie between two keys of the document."""
+    kept: set[int] = field(default_factory=set)
+    """Frames of the document's in-betweens on which in-betweens of the layer stay."""
+    beside: set[int] = field(default_factory=set)
+    """Frames of in-betweens that are left out, because a drawing of the artist's own stays beside them."""
+    pairs: int = 0
+    """Number of pairs that are left out for the same reason."""
 
 
 def draw(ob, name: str, film: Film) -> Done:
-    """Draws a film on the layer `name`, in the place of all generated drawings there."""
+    """Draws a film on the layer `name`, in the place of generated drawings there."""
     guard.need_named(ob, [name])
     target = gp.layer(ob, name)
-    own = _cleared(ob, name, target)
+    own = _cleared(ob, name, target, film)
     keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}
     traced = {frame: strokes for frame, strokes in sorted(film.traced.items()) if frame not in own | film.keys.keys()}
     done = Done(keys=len(keys), stayed=own & film.keys.keys())
@@ -79,13 +87,13 @@ def draw(ob, name: str, film: Film) -> Done:
     jobs.drained(tracing.write(ob, layer, mapper, 0, traced, looks.Looks(), record, written, known))
     records.write(ob.data, kept)
     done.strokes = len(written.numbers)
-    _pair(target, keys.keys(), film)
+    done.pairs = _pair(target, keys.keys(), film)
     _draw_between(ob, target, mapper, film, keys.keys(), done)
     return done
 
 
-def _cleared(ob, name: str, target) -> set[int]:
-    """Removes all generated drawings of a layer, and returns the frames of the others.
+def _cleared(ob, name: str, target, film: Film) -> set[int]:
+    """Removes the generated drawings of a layer that a film replaces, and returns the frames of the artist's.
 
     In-betweens without a checksum, as on a renamed layer, stay: the artist may have changed them.
     """
@@ -96,10 +104,30 @@ def _cleared(ob, name: str, target) -> set[int]:
     (layer,) = dr.read(ob, [name])
     dr.keep(ob, layer)
     between = {frame for span in record.spans.values() for frame in span.sums if frame in layer.other}
-    gp.remove_frames(target, sorted(layer.made.keys() | between))
-    if kept.pop(name, None) is not None:
+    own = set(layer.kept - between)
+    replaced = {frame for frame in between if _is_replaced(frame, film, own)}
+    gp.remove_frames(target, sorted(layer.made.keys() | replaced))
+    if name in kept:
+        _forget(record, replaced)
         tween_records.write(ob.data, kept)
-    return set(layer.kept - between)
+    return own
+
+
+def _is_replaced(frame: int, film: Film, own: set[int]) -> bool:
+    """Whether a film draws in the place of an in-between of the layer."""
+    if frame in film.keys or frame in film.traced:
+        return True
+    return any(first < frame < last and not any(first <= mine <= last for mine in own) for first, last in film.spans)
+
+
+def _forget(record: tween_records.Layer, frames: set[int]) -> None:
+    """Forgets in-betweens that are gone. What is left of their spans is drawn again at the next update."""
+    for first, span in list(record.spans.items()):
+        left = {frame: total for frame, total in span.sums.items() if frame not in frames}
+        if not left:
+            del record.spans[first]
+        elif len(left) < len(span.sums):
+            span.sums, span.digest = left, ""
 
 
 def _known(ob, drawn: Strokes) -> dict[tuple[int, bool], int]:
@@ -179,19 +207,24 @@ def _tint(rows: gp.Rows, strokes: list[tracing.Placed], shown: list[Ink]) -> Non
         rows.values["fill_color"] = fills
 
 
-def _pair(target, written, film: Film) -> None:
-    """Stores the pairs that the artist made on the strokes of neighbouring keys."""
+def _pair(target, written, film: Film) -> int:
+    """Stores the pairs that the artist made on the strokes of neighbouring keys. Returns how many are left out, because a drawing of the
+    artist's own is in the place of one of the two."""
+    left = 0
     drawings, frames = gp.drawings(target), sorted(film.keys)
     following = dict(zip(frames, frames[1:]))
     for frame, i, j in film.pairs:
         after = following.get(frame)
         if frame not in written or after not in written:
+            there = pairs.between(*(st.read(drawings[each][0]) for each in (frame, after)))
+            left += (i, j) not in there
             continue
         hand = pairs.Hand(drawings[frame][0], drawings[after][0])
         if j < 0:
             hand.alone(0, i)
         else:
             hand.pair(i, j)
+    return left
 
 
 def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> None:
@@ -212,7 +245,10 @@ def _draw_between(ob, target, mapper: Mapper, film: Film, keys, done: Done) -> N
             drawn[first, last] = {frame: _write_between(ob, target, mapper, frame, strokes, inks) for frame, strokes in inside.items()}
             marks.note(ob.data, target.name, inside)
     done.between = sum(map(len, drawn.values()))
-    done.left = len(film.between.keys() - set(there.keys)) - done.between
+    rest = film.between.keys() - set(there.keys) - {frame for sums in drawn.values() for frame in sums}
+    done.kept = rest & set(there.made)
+    done.beside = {frame for frame in rest - done.kept if any(first < frame < last for first, last in film.spans)}
+    done.left = len(rest - done.kept - done.beside)
     if drawn:
         _note(ob, target, record, {span: film.spans[span] for span in drawn}, drawn)
         tween_records.write(ob.data, kept)

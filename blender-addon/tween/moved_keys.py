@@ -5,7 +5,8 @@ the in-betweens or without them. `followed` gives the records the frames that th
 
 How: a record notes the checksum of its two keys' points. The noted checksums and those of the layer's keys are two lists in time order. Their
 longest common stretches say which key is which. Where a stretch differs on both sides but has as many keys, such as a key that was moved and
-redrawn, its keys are the same in order. Otherwise a key is the one on its own frame.
+redrawn, its keys are the same in order. Otherwise a key is the one on its own frame. Keys that stand where they stood count as such, unless more keys
+are known again without that.
 
 Why so: the order of drawings is what a move keeps. Single drawings may look alike, such as the poses of a cycle or a hold; only their
 neighbours tell them apart.
@@ -16,9 +17,11 @@ redrawn.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
+from itertools import pairwise
 
 from ..blender import grease_pencil as gp
 from . import keys as ks
@@ -88,6 +91,17 @@ def _places(record: records.Layer, now: dict[int, int], keys: list[int]) -> dict
     before = sorted(noted)
     if None in noted.values():
         return {frame: frame for frame in before if frame in now}
+    stand = [frame for frame in before if now.get(frame) == noted[frame]]
+    standing: dict[int, int] = {frame: frame for frame in stand}
+    for low, high in pairwise([-math.inf, *stand, math.inf]):
+        old, new = ([frame for frame in frames if low < frame < high] for frames in (before, keys))
+        standing |= _in_order(old, noted, new, now)
+    moving = _in_order(before, noted, keys, now)
+    return moving if len(moving) > len(standing) else standing
+
+
+def _in_order(before: list[int], noted: dict[int, int], keys: list[int], now: dict[int, int]) -> dict[int, int]:
+    """Which recorded key is which key, by their order alone."""
     found: dict[int, int] = {}
     match = SequenceMatcher(None, [noted[frame] for frame in before], [now[frame] for frame in keys], autojunk=False)
     for kind, a, b, c, d in match.get_opcodes():

@@ -43,15 +43,17 @@ class Layer:
     spans: dict[int, Span] = field(default_factory=dict)
 
     def holding(self, first: int, last: int) -> Span | None:
-        """The recorded span that contains a span."""
-        for start, span in self.spans.items():
-            if start <= first and last <= span.last:
-                return span
-        return None
+        """The recorded span that contains a span; the shortest, where another one was drawn inside of what is left of a longer one."""
+        start = self._holding(first, last)
+        return None if start is None else self.spans[start]
+
+    def _holding(self, first: int, last: int) -> int | None:
+        lengths = {start: span.last - start for start, span in self.spans.items() if start <= first and last <= span.last}
+        return min(lengths, key=lambda start: lengths[start], default=None)
 
     def choices(self, first: int, last: int) -> Choices | None:
         """The choices of a span that is recorded, or that a key divides. Its spacing is divided with it."""
-        start = next((start for start, span in self.spans.items() if start <= first and last <= span.last), None)
+        start = self._holding(first, last)
         if start is None:
             return None
         return self.spans[start].choices.divided(start, self.spans[start].last, (first, last))

@@ -107,6 +107,24 @@ def test_spans_keep_their_own_choices_on_other_frames(addon):
     assert {k: (v["last"], v["choices"]["spacing"]) for k, v in spans.items()} == {"1": (9, "SMOOTH"), "9": (12, "EASE_IN"), "12": (14, "LINEAR")}
 
 
+def test_a_copy_of_a_key_is_a_new_key(addon):
+    ob = drawn(addon, dict(zip(KEYS, PLACES)), "EASE_IN")
+    ob.data.layers["Lines"].frames.remove(12)
+    ob.data.layers["Lines"].frames.copy(9, 12)
+    bpy.ops.rototoon.update_in_betweens()
+    spans = json.loads(ob.data["rototoon_tween"])["Lines"]["spans"]
+    assert {int(k): v["last"] for k, v in spans.items()} == {1: 9, 9: 12, 12: 17, 17: 25}
+
+
+def test_poses_of_a_cycle_are_told_apart_by_their_neighbours(addon):
+    ob = drawn(addon, dict(zip((1, 9, 17, 25), (0.0, 2.0, 0.0, 2.0))), "LINEAR", by_span=((18, "EASE_IN"),))
+    put_on(ob, {frame: frame + 16 for frame in (9, 17, 25)})
+    bpy.ops.rototoon.update_in_betweens()
+    spans = json.loads(ob.data["rototoon_tween"])["Lines"]["spans"]
+    found = {int(k): (v["last"], v["choices"]["spacing"]) for k, v in spans.items()}
+    assert found == {1: (25, "LINEAR"), 25: (33, "LINEAR"), 33: (41, "EASE_IN")}
+
+
 def test_a_moved_key_that_was_changed_too_keeps_its_spans(addon):
     ob = drawn(addon, dict(zip(KEYS, PLACES)))
     put_on(ob, {17: 20, 25: 28})

@@ -76,6 +76,13 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         """What came in, for the message."""
         if lines.stayed:
             self.warn(f"drawings of yours stay as they were, on {listed(sorted(lines.stayed))}")
+        if lines.kept:
+            self.warn(f"in-betweens of this object stay as they were, on {listed(sorted(lines.kept))}")
+        if lines.beside:
+            said = f"left out: {counted(len(lines.beside), 'in-between')} beside drawings of yours that stay, on {listed(sorted(lines.beside))}"
+            self.warn(f"{said}; press In-between there")
+        if lines.pairs:
+            self.warn(f"left out: {counted(lines.pairs, 'pair')} of strokes on drawings of yours that stay; pair them by Match Strokes")
         if lines.left:
             verb = "lies" if lines.left == 1 else "lie"
             self.warn(f"left out: {counted(lines.left, 'in-between')} that {verb} between no two drawings of the document")
