@@ -170,6 +170,10 @@ class LinePairing(pairing.Pairing):
         spans = sorted({layer.frames for layer in self._layers})
         return "Frames " + ", ".join(f"{first} and {last}" for first, last in spans)
 
+    def doubts(self) -> str:
+        """Nothing: the numbers say which strokes are the same. See `doubts` for those that tracing doubts."""
+        return ""
+
     def summary(self) -> str:
         """The pairs in words."""
         same = sum(row.kind == tween.PAIR for row in self.pairs)

@@ -15,7 +15,7 @@ from rototoon import tween
 from ..blender import grease_pencil as gp
 from ..blender import marks
 from ..blender import strokes as st
-from . import breakdowns, records
+from . import breakdowns, doubted, records
 from . import keys as ks
 from .sheets import Laid, Sheet
 
@@ -242,9 +242,8 @@ def _fills(before: _Side, after: _Side) -> np.ndarray:
 
 
 def _exchanged(stands: np.ndarray, opacities: np.ndarray) -> tuple[int, int]:
-    """The number of strokes of either key that show on its half of the span only, so that others take their place. What vanishes or appears
-    shrinks, leaves the picture or fades, and is never gone from one frame to the next."""
-    gone = np.isin(opacities, (0.0, 1.0)).all(0) & (opacities == 0).any(0)
+    """The number of strokes of either key that show on its half of the span only, so that others take their place."""
+    gone = doubted.given_way(opacities)
     return int((gone & (stands[:, 1] < 0)).sum()), int((gone & (stands[:, 0] < 0)).sum())
 
 

@@ -14,9 +14,9 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
-from ..common.wording import counted
+from ..common.wording import counted, listed
 from . import keys as ks
-from . import breakdowns, pairs, records, sheets, tweening
+from . import breakdowns, doubted, pairs, records, sheets, tweening
 from .charts import Choices
 
 REACH = 14.0
@@ -61,6 +61,8 @@ class Pair:
     later: int
     by_hand: bool
     confidence: float
+    doubtful: bool = False
+    """Whether In-between would not carry the pair out."""
 
 
 @dataclass
@@ -123,20 +125,22 @@ class Pairing:
         """The matched keys of each layer: (layer, earlier frame, later frame)."""
         return [(layer.name, *layer.frames) for layer in self._layers]
 
-    def match(self, progress: tween.Progress | None = None) -> list[tween.Matches]:
+    def match(self, progress: tween.Progress | None = None) -> list[doubted.Found]:
         """Matches the strokes. It does not use Blender, so it may run in a thread."""
-        return [tween.match_strokes(layer.call.laid.drawings, progress) for layer in self._layers]
+        return [doubted.match(layer.call.laid.drawings, progress) for layer in self._layers]
 
-    def take(self, found: list[tween.Matches]) -> None:
+    def take(self, found: list[doubted.Found]) -> None:
         """Takes over the result of `match`."""
         self.pairs = []
-        for number, (layer, matches) in enumerate(zip(self._layers, found)):
-            layer.call.matches = matches
+        for number, (layer, each) in enumerate(zip(self._layers, found)):
+            matches = layer.call.matches = each.matches
             split = len(layer.world[0])
             marks = pairs.Hand(*layer.handles).values()
             for (kind, earlier, later, _), (_, sure) in zip(matches.rows.tolist(), matches.values.tolist()):
+                doubtful = each.held or earlier in each.strokes or later in each.strokes
                 later = later - split if later >= 0 else -1
-                self.pairs.append(Pair(number, kind, earlier, later, _is_by_hand(marks, earlier, later), sure))
+                by_hand = _is_by_hand(marks, earlier, later)
+                self.pairs.append(Pair(number, kind, earlier, later, by_hand, sure, kind == tween.PAIR and doubtful and not by_hand))
 
     def store(self) -> None:
         """Stores the numbers of the strokes of all keys."""
@@ -172,6 +176,23 @@ class Pairing:
         with self._change(item.layer) as hand:
             hand.pair(earlier.index, later.index)
         return True
+
+    def decide(self, earlier: int, later: int) -> bool:
+        """Pairs two strokes by their numbers, on the first layer that has both; -1 says that the other one has no counterpart. Returns whether there
+        is such a layer."""
+        for number, layer in enumerate(self._layers):
+            tracks = [gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1).tolist() for handle in layer.handles]
+            places = [-1 if wanted == pairs.NONE else own.index(wanted) if wanted in own else None for wanted, own in zip((earlier, later), tracks)]
+            if None in places:
+                continue
+            with self._change(number) as hand:
+                if pairs.NONE in places:
+                    side = places.index(pairs.NONE)
+                    hand.alone(1 - side, places[1 - side])
+                else:
+                    hand.pair(*places)
+            return True
+        return False
 
     def free(self, item: Item | None) -> bool:
         """Takes back the decision on a stroke. Without a decision, the stroke gets no counterpart. Returns as `click`."""
@@ -247,9 +268,10 @@ class Pairing:
             else:
                 # All pieces of a stroke have the stroke's number.
                 own = int(before[row.layer]) + row.earlier + 1
+                doubt = "?" if row.doubtful else ""
                 number = next((whole[each] for each in items if each in whole), own)
                 whole.update(dict.fromkeys(items, number))
-                label, colour = str(number), colour_of(number)
+                label, colour = f"{number}{doubt}", colour_of(number)
             for item in items:
                 if item in seen:
                     continue
@@ -276,6 +298,18 @@ class Pairing:
         if pieces:
             said += f", {counted(pieces, 'piece')}"
         return said + (f", {alone} without counterpart" if alone else "")
+
+    def doubts(self) -> str:
+        """What In-between would not carry out, in words; empty if it is sure of all pairs. Strokes have the numbers that `marks` shows."""
+        before = np.cumsum([0] + [len(layer.world[0]) for layer in self._layers])
+        said = []
+        for span in sorted({layer.frames for layer in self._layers}):
+            rows = [row for row in self.pairs if row.kind == tween.PAIR and self._layers[row.layer].frames == span]
+            numbers = [int(before[row.layer]) + row.earlier + 1 for row in rows if row.doubtful]
+            if numbers:
+                which = "number" if len(numbers) == 1 else "numbers"
+                said.append(f"frames {span[0]} to {span[1]}: {len(numbers)} of {counted(len(rows), 'pair')}, {which} {listed(numbers)}")
+        return f"doubtful, so that In-between does not carry them out: {'; '.join(said)}; pair them by hand, or draw a breakdown" if said else ""
 
 
 def _is_by_hand(marks: tuple[np.ndarray, np.ndarray], earlier: int, later: int) -> bool:

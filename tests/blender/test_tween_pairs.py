@@ -97,3 +97,45 @@ def test_clicks_find_strokes(addon):
     # With a stroke of the later key picked, one of the earlier key is looked for first.
     across = found.pick(at(second[0][3]), view, size)
     assert across is None or across.side == 0 or across == module.Item(0, 1, 0)
+
+
+def test_match_strokes_names_what_in_between_does_not_carry_out(addon, monkeypatch):
+    ob = keyed(addon)
+    doubted = addon("tween.doubted")
+    match = doubted.match
+
+    def doubting(drawings, progress=None):
+        found = match(drawings, progress)
+        # The first stroke of the earlier key, and the third one of the later key.
+        found.strokes = {0, 5}
+        return found
+
+    monkeypatch.setattr(doubted, "match", doubting)
+    bpy.ops.rototoon.match_strokes()
+    report = addon("scripting").take_reports()[-1]
+    assert report.kind == "WARNING" and report.text.startswith("3 pairs; ")
+    assert report.warnings[0].startswith("doubtful, so that In-between does not carry them out: frames 1 to 9: 2 of 3 pairs, numbers 1 and 3")
+    module, found = pairing_of(addon, ob)
+    assert sorted(mark.label for mark in found.marks()) == ["1?", "1?", "2", "2", "3?", "3?"]
+    found.click(module.Item(0, 0, 0))
+    found.click(module.Item(0, 1, 0))
+    found.take(found.match())
+    assert sorted(mark.label for mark in found.marks()) == ["1", "1", "2", "2", "3?", "3?"], "what was paired by hand is beyond doubt"
+
+
+def test_doubts_are_those_of_in_between(addon):
+    from test_strokes import add, drawing_object
+    from test_tween import scribble
+
+    ob = drawing_object(addon)
+    for seed, frame in enumerate((1, 9)):
+        add(addon, ob, "Lines", frame, scribble(seed))
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.match_strokes()
+    said = addon("scripting").take_reports()[-1]
+    assert said.kind == "WARNING", said
+    bpy.ops.rototoon.in_between()
+    assert "can be believed" in addon("scripting").take_reports()[-1].text
+    other = keyed(addon)
+    bpy.ops.rototoon.match_strokes()
+    assert addon("scripting").take_reports()[-1].kind == "INFO" and len(other.data.layers) == 1

@@ -7,6 +7,7 @@ from ...blender import windows
 from ...common import jobs
 from ...common.operators import NAVIGATION, OnDrawing, Reporting
 from ...common.undone import Undone
+from ...common.wording import joined
 from .. import pair_overlay, pairing
 
 HELP = "Click two strokes to pair them, Alt-click one to free it, Ctrl Z to undo, Esc to leave"
@@ -36,6 +37,7 @@ class Pairing(OnDrawing, Reporting):
         self._pairing = self.make_pairing(context)
         self._pairing.take(self._pairing.match())
         self._pairing.store()
+        self.warn(self._pairing.doubts())
         return self.done(self._pairing.summary())
 
     def invoke(self, context, _event):
@@ -96,7 +98,9 @@ class Pairing(OnDrawing, Reporting):
 
     def _tick(self, context):
         if self._work is None:
-            context.workspace.status_text_set(f"{self._pairing.keys()}: {self._pairing.summary()}.   {self.help}")
+            doubtful = sum(row.doubtful for row in self._pairing.pairs)
+            said = joined(self._pairing.summary(), f"{doubtful} doubtful (?)" if doubtful else "")
+            context.workspace.status_text_set(f"{self._pairing.keys()}: {said}.   {self.help}")
             return {"RUNNING_MODAL"}
         if not self._work.advance():
             context.workspace.status_text_set(f"Matching {self._work.fraction:4.0%}   {self.help}")
@@ -119,6 +123,7 @@ class Pairing(OnDrawing, Reporting):
         if not found:
             return {"CANCELLED"}
         self._pairing.store()
+        self.warn(self._pairing.doubts())
         return self.done(self._pairing.summary())
 
     def cancel(self, context):
