@@ -139,3 +139,45 @@ def test_doubts_are_those_of_in_between(addon):
     other = keyed(addon)
     bpy.ops.rototoon.match_strokes()
     assert addon("scripting").take_reports()[-1].kind == "INFO" and len(other.data.layers) == 1
+
+
+def test_scripts_pair_strokes_by_their_numbers(addon):
+    ob = keyed(addon)
+    bpy.ops.rototoon.match_strokes()
+    assert tracks(addon, ob, 1) == tracks(addon, ob, 9) == [1, 2, 3]
+    bpy.ops.rototoon.match_strokes(earlier=1, later=2)
+    assert addon("scripting").take_reports()[-1].text.startswith("3 pairs, 1 decided by hand")
+    assert tracks(addon, ob, 1) == [1, 2, 3] and tracks(addon, ob, 9)[1] == 1
+    bpy.ops.rototoon.in_between()
+    assert tracks(addon, ob, 9)[1] == 1
+
+
+@pytest.mark.parametrize("side", (0, 1))
+def test_scripts_say_that_a_stroke_has_no_counterpart(addon, side):
+    ob = keyed(addon)
+    bpy.ops.rototoon.match_strokes()
+    bpy.ops.rototoon.match_strokes(**dict(zip(("earlier", "later"), (2, -1) if side == 0 else (-1, 2))))
+    assert "1 decided by hand" in (text := addon("scripting").take_reports()[-1].text) and "2 without counterpart" in text
+    numbers = tracks(addon, ob, 1), tracks(addon, ob, 9)
+    assert 2 not in numbers[1] and numbers[0] == [1, 2, 3]
+    marks = content(addon, ob, "Lines", (1, 9)[side]).curve[("rototoon_next", "rototoon_before")[side]].tolist()
+    assert marks == [0, -1, 0]
+
+
+@pytest.mark.parametrize(
+    ("pair", "message"),
+    [
+        ({"earlier": 1}, "later: found 0, expected the number of a stroke on the later key, or -1 for no counterpart of stroke 1"),
+        ({"later": 1}, "earlier: found 0, expected the number"),
+        ({"earlier": -1, "later": -1}, "found -1 for both"),
+        ({"earlier": 1, "later": 7}, "Frames 1 to 9: no layer has the stroke 1 on the earlier key and the stroke 7 on the later key"),
+        ({"earlier": 7, "later": -1}, "no layer has the stroke 7 on the earlier key. Strokes get their numbers"),
+    ],
+)
+def test_a_pair_that_no_layer_has_is_named(addon, pair, message):
+    ob = keyed(addon)
+    bpy.ops.rototoon.match_strokes()
+    before = content(addon, ob, "Lines", 1)
+    with pytest.raises(RuntimeError, match=message):
+        bpy.ops.rototoon.match_strokes(**pair)
+    assert content(addon, ob, "Lines", 1).equals(before)
