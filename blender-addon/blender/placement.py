@@ -23,11 +23,13 @@ NO_CAMERA = "The scene has no camera: add one, or choose one in the panel Footag
 class Mapper:
     """Mappings of an object's layers on some frames."""
 
-    def __init__(self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str]):
-        """`names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the plane on which the artist
+    def __init__(
+        self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str], size: tuple[int, int] | None = None
+    ):
+        """`size` is that of the picture where there is no footage. `names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the plane on which the artist
         drew."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
-        self._ob, self._points, self._names, self._frames = ob, points, names, set()
+        self._ob, self._points, self._names, self._size, self._frames = ob, points, names, size, set()
         layers = [gp.find_layer(ob, name) for name in names]
         self._moves = moves(ob, layers)
         if not self._moves:
@@ -56,7 +58,7 @@ class Mapper:
         return not self._moves
 
     def _add(self, ob, layers, frame: int | None) -> None:
-        view = view_of(ob)
+        view = view_of(ob, self._size)
         for index, layer in enumerate(layers):
             matrix = cameras.need_size(ob, cameras.layer_to_world(ob, layer))
             # The view's z axis in layer space: the normal of a plane that faces the view.
@@ -66,10 +68,10 @@ class Mapper:
             self._mappings[index, frame] = cameras.Mapping(view, matrix, plane)
 
 
-def view_of(ob: bpy.types.Object) -> cameras.View:
-    """The view of an object's footage on the current frame."""
+def view_of(ob: bpy.types.Object, size: tuple[int, int] | None = None) -> cameras.View:
+    """The view of an object's footage on the current frame. `size` is that of the picture where there is no footage."""
     settings = ob.rototoon
-    width, height = settings.width, settings.height
+    width, height = size or (settings.width, settings.height)
     if not width or not height:
         raise Problem("No footage chosen: choose it in the panel Footage")
     if settings.plane == "REFERENCE":

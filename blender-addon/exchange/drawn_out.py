@@ -41,11 +41,12 @@ class Written:
     """Scene frames with a stroke that could not be written: one of its points has no place."""
 
 
-def of(ob, pegs: set[str]) -> Written:
-    """The drawings of the object's layer of lines in the form of a document. `pegs` are the names of the document's pegs."""
+def of(ob, pegs: set[str], size: tuple[int, int] | None = None) -> Written:
+    """The drawings of the object's layer of lines in the form of a document. `pegs` are the names of the document's pegs, `size` is that of the
+    picture where there is no footage."""
     if gp.find_layer(ob, ob.rototoon.lines_layer) is None:
         return Written()
-    return _Layer(ob, pegs).written()
+    return OfLayer(ob, ob.rototoon.lines_layer, pegs, size).written()
 
 
 def put(document: dict[str, Any], fields: dict[str, Any]) -> None:
@@ -93,21 +94,23 @@ class _Sheet:
         return [number - 1 for number in self.numbers.values()]
 
 
-class _Layer:
-    def __init__(self, ob, pegs: set[str]):
+class OfLayer:
+    """The drawings of one layer."""
+
+    def __init__(self, ob, name: str, pegs: set[str], size: tuple[int, int] | None):
         self._ob, self._pegs, self._offset = ob, pegs, ob.rototoon.frame_offset
-        (self._drawn,) = dr.read(ob, [ob.rototoon.lines_layer], None)
+        (self._drawn,) = dr.read(ob, [name], None)
         self._record = tween_records.read(ob.data).get(self._drawn.name, tween_records.Layer())
         self._adopt(gp.find_layer(ob, self._drawn.name))
         keys = {**self._drawn.keys, **dict.fromkeys(self._drawn.blank, dr.EMPTY)}
         contents = {**keys, **self._drawn.made, **self._drawn.other}
-        mapper, palette = placement.Mapper(ob, contents, {}, [self._drawn.name]), colours.palette(ob)
+        mapper, palette = placement.Mapper(ob, contents, {}, [name], size), colours.palette(ob)
         self._keys = sorted(keys)
         layer = gp.find_layer(ob, self._drawn.name)
         self._record = moved_keys.followed(layer, self._record, self._keys).record
         for frame, marks in breakdowns.passed_on(layer, self._keys, self._adopted).items():
-            for name, values in marks.values().items():
-                keys[frame].set_strokes(name, values)
+            for attribute, values in marks.values().items() if frame in self._drawn.keys else ():
+                keys[frame].set_strokes(attribute, values)
         self._fresh = itertools.count(max(self._drawn.highest.values(), default=0) + 1)
         self._pieces: dict[tuple[int | None, int], int] = {}
         self._sheets: dict[int, _Sheet] = {}
@@ -150,9 +153,55 @@ class _Layer:
             "in_betweens": self._between(),
             "matches": self._matches(),
         }
-        lost = {frame for frame, sheet in self._sheets.items() if len(sheet.strokes) < len(sheet.content.sizes)}
         drawn = self._drawn
-        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), lost)
+        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), self.lost)
+
+    # -- by frame ----------------------------------------------------------------------------------------------------
+
+    @property
+    def keys(self) -> list[int]:
+        """The frames of the artist's drawings, rising."""
+        return self._keys
+
+    @property
+    def frames(self) -> list[int]:
+        """The frames of all drawings, rising."""
+        return list(self._sheets)
+
+    @property
+    def highest(self) -> int:
+        """The highest number of a stroke."""
+        return max((number for sheet in self._sheets.values() for number in sheet.numbers.values()), default=0)
+
+    @property
+    def lost(self) -> set[int]:
+        """Frames with a stroke that could not be written."""
+        return {frame for frame, sheet in self._sheets.items() if len(sheet.strokes) < len(sheet.content.sizes)}
+
+    def after(self, frame: int) -> int | None:
+        """The frame of the next drawing of the artist."""
+        return next((key for key in self._keys if key > frame), None)
+
+    def shown(self, frame: int) -> list[dict[str, Any]]:
+        """The strokes that the layer shows on a frame, in the form of in-betweens."""
+        drawn = max((each for each in self._sheets if each <= frame), default=None)
+        if drawn is None:
+            return []
+        if drawn in self._drawn.other:
+            return self._between_on(drawn)
+        sheet, pegs = self._sheets[drawn], self._pegs if drawn == frame else set()
+        return [{"track": sheet.numbers[i] - 1, **stroke, **self._more(sheet, i, pegs), "opacity": 1.0} for i, stroke in sheet.strokes.items()]
+
+    def fields_of(self, key: int) -> dict[str, Any]:
+        """The fields of a drawing of the artist but for its strokes."""
+        drawing = next(each for each in self._drawings() if each["frame"] == key - self._offset)
+        return {name: value for name, value in drawing.items() if name not in ("frame", "strokes")}
+
+    def pairs_of(self, key: int) -> list[dict[str, Any]]:
+        """The pairs of a drawing's strokes with those of the next one."""
+        return [pair for pair in self._pairs() if pair["frame"] == key - self._offset]
+
+    # -- the fields of a document ------------------------------------------------------------------------------------
 
     def _more(self, sheet: _Sheet, index: int, pegs: set[str]) -> dict[str, Any]:
         return self._further.of_stroke(int(sheet.content.strokes(gp.FIELDS)[index]), pegs)
@@ -199,17 +248,17 @@ class _Layer:
         return found
 
     def _between(self) -> list[dict[str, Any]]:
-        found = []
-        for frame in sorted(self._drawn.other):
-            sheet, strokes = self._sheets[frame], []
-            seen, full = _opacities(sheet.content), self._full(frame)
-            for i, stroke in sheet.strokes.items():
-                number = sheet.numbers[i]
-                share = round(float(min(seen[i] / max(full.get(number, 1.0), 1e-6), 1.0)), 4)
-                # Pegs have moved it already.
-                strokes.append({"track": number - 1, **stroke, **self._more(sheet, i, set()), "opacity": share})
-            found.append({"frame": frame - self._offset, "strokes": strokes})
-        return found
+        return [{"frame": frame - self._offset, "strokes": self._between_on(frame)} for frame in sorted(self._drawn.other)]
+
+    def _between_on(self, frame: int) -> list[dict[str, Any]]:
+        sheet, strokes = self._sheets[frame], []
+        seen, full = _opacities(sheet.content), self._full(frame)
+        for i, stroke in sheet.strokes.items():
+            number = sheet.numbers[i]
+            share = round(float(min(seen[i] / max(full.get(number, 1.0), 1e-6), 1.0)), 4)
+            # Pegs have moved it already.
+            strokes.append({"track": number - 1, **stroke, **self._more(sheet, i, set()), "opacity": share})
+        return strokes
 
     def _full(self, frame: int) -> dict[int, float]:
         """By number the opacity of strokes that do not fade: that on the keys around a frame."""

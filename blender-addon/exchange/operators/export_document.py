@@ -11,7 +11,7 @@ from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
 from ...lines import drawings
-from .. import drawn, drawn_out, files, filled
+from .. import drawn, drawn_out, files, filled, layers_out, without_footage
 
 
 class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
@@ -24,6 +24,14 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     changes = guard.NOTHING
 
     filepath: bpy.props.StringProperty(name="File", description="The file to write", subtype="FILE_PATH", options={"PATH_SUPPORTS_BLEND_RELATIVE"})
+    layers: bpy.props.EnumProperty(
+        name="Lines",
+        description="Which layers of lines are written",
+        items=(
+            ("ONE", "One Layer", "The layer in the panel Lines"),
+            ("ALL", "All Layers", "All layers of lines that are to be seen, the lowest first, as one drawing on each frame"),
+        ),
+    )
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
 
@@ -33,10 +41,24 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
+    @classmethod
+    def lacking(cls, ob, changes: str) -> str:
+        """As `OnShapes.lacking`. Drawings need no footage."""
+        why = OnShapes.lacking(ob, changes)
+        if not why or not gp.is_drawing(ob):
+            return why
+        found = [layer for layer in drawings.layers(ob) if gp.has_strokes(layer)]
+        return "" if found and (ob.rototoon.pattern or without_footage.lacking(ob) == "") else why
+
     def run(self, context) -> str:
         if not self.filepath:
             raise Problem("No file chosen")
         path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
+        if not context.object.rototoon.pattern:
+            return self._run_without_footage(context.object, path)
+        why = OnShapes.lacking(context.object, self.changes) if self.layers == "ONE" else ""
+        if why:
+            raise Problem(why)
         reading = document.read(context.object, results=True, needed=False)
         document.need_pictures(context.object, reading)
         lines = self._add_lines(context.object, reading.document)
@@ -50,12 +72,25 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         found += [f"paint of {counted(paint, 'frame')}"] if paint else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
 
-    def _add_lines(self, ob, document: dict) -> list[str]:
-        """Puts the drawings of the layer of lines into a document. Returns what they are, for the message."""
-        written = drawn_out.of(ob, drawn.pegs(document))
+    def _run_without_footage(self, ob, path: str) -> str:
+        """Writes drawings as the camera sees them."""
+        project = without_footage.document(ob)
+        size = project["footage"]["width"], project["footage"]["height"]
+        found = self._add_lines(ob, project, size)
+        if not found:
+            raise Problem(f'No lines on "{ob.rototoon.lines_layer}": choose the layer of your lines in the panel Lines, or all layers')
+        without_footage.fit(project)
+        files.save(path, project)
+        return f"{' and '.join(found)} in {os.path.basename(path)}, without footage"
+
+    def _add_lines(self, ob, document: dict, size: tuple[int, int] | None = None) -> list[str]:
+        """Puts the drawings of the layers of lines into a document. Returns what they are, for the message."""
+        source = layers_out if self.layers == "ALL" else drawn_out
+        written = source.of(ob, drawn.pegs(document), size)
         if written.fields:
             drawn_out.put(document, written.fields)
-        self._warn_of_others(ob)
+        if self.layers == "ONE":
+            self._warn_of_others(ob)
         if written.lost:
             self.warn(f"left out: strokes with a point without a place (not a number), on {listed(sorted(written.lost))}")
         found = [counted(written.keys, "drawing")] if written.keys else []
