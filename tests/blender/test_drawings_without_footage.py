@@ -104,3 +104,15 @@ def test_a_layer_without_lines_is_named(addon, tmp_path):
     with pytest.raises(RuntimeError, match='No lines on "Lines": choose the layer of your lines in the panel Lines, or all layers'):
         exported(tmp_path / "none.json")
     assert len(exported(tmp_path / "all.json", layers="ALL")["drawings"]) == 2
+
+
+def test_contours_need_footage_and_are_named(addon, tmp_path):
+    scene()
+    ob = drawn(addon)
+    ob.data.layers.new("Contours")
+    add(addon, ob, "Contours", 1, [circle((0, 0), 1.0, 12)])
+    exported(tmp_path / "lines.json")
+    assert said(addon).warnings == ("left out: contours, which need footage",)
+    ob.rototoon.lines_layer = "None"
+    with pytest.raises(RuntimeError, match="Choose the footage first, in the panel Footage: contours need it"):
+        exported(tmp_path / "none.json")

@@ -6,6 +6,7 @@ import bpy
 
 from ...blender import grease_pencil as gp
 from ...blender import guard
+from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
@@ -76,12 +77,23 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         """Writes drawings as the camera sees them."""
         project = without_footage.document(ob)
         size = project["footage"]["width"], project["footage"]["height"]
+        others = self._without_lines(ob)
         found = self._add_lines(ob, project, size)
+        if not found and others:
+            raise Problem(f"Choose the footage first, in the panel Footage: {others} need it")
+        if others:
+            self.warn(f"left out: {others}, which need footage")
         if not found:
             raise Problem(f'No lines on "{ob.rototoon.lines_layer}": choose the layer of your lines in the panel Lines, or all layers')
         without_footage.fit(project)
         files.save(path, project)
         return f"{' and '.join(found)} in {os.path.basename(path)}, without footage"
+
+    def _without_lines(self, ob) -> str:
+        """What the object has beside lines, in words; empty if it has nothing else."""
+        contours = any(gp.has_strokes(layer) for layer in gp.layers(ob, ob.rototoon.contours_layer))
+        paint = any(st.is_paint(ob, layer) for layer in ob.data.layers)
+        return " and ".join(filter(None, ("contours" if contours else "", "paint" if paint else "")))
 
     def _add_lines(self, ob, document: dict, size: tuple[int, int] | None = None) -> list[str]:
         """Puts the drawings of the layers of lines into a document. Returns what they are, for the message."""
