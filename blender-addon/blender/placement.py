@@ -26,8 +26,8 @@ class Mapper:
     def __init__(
         self, ob: bpy.types.Object, frames: Iterable[int], points: dict[int, np.ndarray], names: list[str], size: tuple[int, int] | None = None
     ):
-        """`size` is that of the picture where there is no footage. `names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the plane on which the artist
-        drew."""
+        """`names` are the layers; one that does not exist yet is where the object is. `points` are the artist's points by layer index; they show the
+        plane on which the artist drew. `size` is that of the picture where there is no footage."""
         self._mappings: dict[tuple[int, int | None], cameras.Mapping] = {}
         self._ob, self._points, self._names, self._size, self._frames = ob, points, names, size, set()
         layers = [gp.find_layer(ob, name) for name in names]
