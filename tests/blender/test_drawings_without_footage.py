@@ -106,6 +106,23 @@ def test_a_layer_without_lines_is_named(addon, tmp_path):
     assert len(exported(tmp_path / "all.json", layers="ALL")["drawings"]) == 2
 
 
+def test_lines_that_were_hidden_stay_hidden(addon, tmp_path):
+    scene()
+    ob = drawing_object(addon, ("Lines", "Front"), filled=True)
+    square = [[0, 0], [2, 0], [2, 2], [0, 2]]
+    add(addon, ob, "Lines", 1, [square], cyclic=True)
+    add(addon, ob, "Front", 1, [[[1, -1], [3, -1], [3, 3], [1, 3]]], cyclic=True)
+    gp = addon("blender.grease_pencil")
+    if gp.FILL_BY_ID:
+        for layer in ob.data.layers:
+            gp.put(gp.drawings(layer)[1][0], "fill_id", [1])
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.hidden_lines()
+    shape, *lines = exported(tmp_path / "cut.json")["drawings"][0]["strokes"]
+    assert shape["fill"] and shape["closed"] and "widths" not in shape, "the outline carries the fill alone"
+    assert lines and all(point[0] <= 500.1 for each in lines for point in each["points"]), "behind the front shape is no line"
+
+
 def test_contours_need_footage_and_are_named(addon, tmp_path):
     scene()
     ob = drawn(addon)
