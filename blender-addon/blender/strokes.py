@@ -232,6 +232,16 @@ def solid(ob, content: Content) -> np.ndarray:
     return shapes & ~lined[np.clip(content.strokes("material_index"), 0, len(lined) - 1)]
 
 
+def undrawn(content: Content) -> np.ndarray:
+    """For each stroke: whether its line is transparent at all points. A fill may be there all the same."""
+    opacity = content.point.get("opacity")
+    found = np.zeros(len(content.sizes), bool)
+    some = content.sizes > 0
+    if opacity is not None and some.any():
+        found[some] = np.maximum.reduceat(opacity, content.starts[:-1][some]) <= 0
+    return found
+
+
 def _shows_line(material) -> bool:
     return material is None or material.grease_pencil is None or material.grease_pencil.show_stroke
 

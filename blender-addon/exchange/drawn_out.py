@@ -253,9 +253,12 @@ class OfLayer:
     def _between_on(self, frame: int) -> list[dict[str, Any]]:
         sheet, strokes = self._sheets[frame], []
         seen, full = _opacities(sheet.content), self._full(frame)
+        # A shape without a line fades by its fill.
+        fill = sheet.content.strokes("fill_opacity")
         for i, stroke in sheet.strokes.items():
             number = sheet.numbers[i]
-            share = round(float(min(seen[i] / max(full.get(number, 1.0), 1e-6), 1.0)), 4)
+            share = fill[i] if stroke.get("fill") and not seen[i] else seen[i] / max(full.get(number, 1.0), 1e-6)
+            share = round(float(np.clip(share, 0.0, 1.0)), 4)
             # Pegs have moved it already.
             strokes.append({"track": number - 1, **stroke, **self._more(sheet, i, set()), "opacity": share})
         return strokes

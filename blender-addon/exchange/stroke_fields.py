@@ -85,20 +85,12 @@ def _numbers(place: str, values: Any) -> np.ndarray:
     return array
 
 
-def _without_line(content: st.Content) -> np.ndarray:
-    """Strokes whose line is transparent all along while their fill shows, as Remove Hidden Lines leaves them."""
-    opacity, some = content.point.get("opacity"), content.sizes > 0
-    found = np.zeros(len(content.sizes), bool)
-    if opacity is not None and some.any():
-        found[some] = np.maximum.reduceat(opacity, content.starts[:-1][some]) <= 0
-    return found & (content.strokes("fill_opacity") > 0)
-
-
 def written(ob, content: st.Content, mapping, palette) -> dict[int, dict[str, Any]]:
     """The fields of a drawing's strokes by index. Strokes with a point that has no place are left out."""
     seen, closed = colours.of_strokes(ob, content, palette), content.strokes("cyclic")
     filled, inks = st.filled(ob, content) != 0, colours.of_lines(content, palette)
-    radii, fills = content.point.get("radius"), st.solid(ob, content) | (filled & closed & _without_line(content))
+    # A line that Remove Hidden Lines took away leaves its fill, with a line of opacity 0: in a document this is a shape without a line.
+    radii, fills = content.point.get("radius"), st.solid(ob, content) | closed & filled & st.undrawn(content)
     found = {}
     for i, line in enumerate(stroke_lines.lines(content)):
         line = line[:-1] if closed[i] and len(line) > 2 and np.array_equal(line[0], line[-1]) else line

@@ -165,7 +165,7 @@ class _Pieces:
 def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     content, count = entry.content, len(entry.content.sizes)
     # Transparent lines stay, since they carry fills.
-    carriers = _undrawn(content)
+    carriers = st.undrawn(content)
     mine = np.flatnonzero((pieces.strokes >= entry.first_stroke) & (pieces.strokes < entry.first_stroke + count))
     stroke = pieces.strokes[mine] - entry.first_stroke
     mine, stroke = (each[entry.fine[stroke] & ~carriers[stroke]] for each in (mine, stroke))
@@ -184,16 +184,6 @@ def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
         bool(touched.any()),
         len(gone),
     )
-
-
-def _undrawn(content: st.Content) -> np.ndarray:
-    """Strokes whose points are all transparent."""
-    opacity = content.point.get("opacity")
-    undrawn = np.zeros(len(content.sizes), bool)
-    some = content.sizes > 0
-    if opacity is not None and some.any():
-        undrawn[some] = np.maximum.reduceat(opacity, content.starts[:-1][some]) <= 0
-    return undrawn
 
 
 def _numbered(content: st.Content, touched: np.ndarray) -> st.Content:

@@ -434,3 +434,17 @@ def test_traced_strokes_of_a_document_keep_line_and_fill(addon, film, pictures, 
 def test_a_wrong_fill_colour_is_named(addon, film, pictures, tmp_path, change):
     with pytest.raises(RuntimeError, match=r"drawings\[0\].strokes\[0\].fill_colour: found a list of|fill_colour: found \[1, 0"):
         taken(tmp_path / "wrong.json", pictures, drawings=[{"frame": 1, "strokes": [line(0, **change)]}])
+
+
+def test_a_shape_whose_line_is_hidden_goes_out_without_a_line(addon, film, tmp_path):
+    gp, ob = addon("blender.grease_pencil"), bpy.context.object
+    square = np.array([[20.0, 20], [60, 20], [60, 50], [20, 50]])
+    ls.put(addon, ob, "Lines", 1, [(square, True)])
+    handle = handle_of(addon, ob, "Lines", 1)
+    if gp.FILL_BY_ID:
+        gp.put(handle, "fill_id", np.array([1], np.int32))
+    else:
+        ob.data.materials[0].grease_pencil.show_fill = True
+    gp.put(handle, "opacity", np.zeros(4, np.float32))
+    (stroke,) = exported(tmp_path / "hidden.json")["drawings"][0]["strokes"]
+    assert stroke["fill"] and "widths" not in stroke and "fill_colour" not in stroke
