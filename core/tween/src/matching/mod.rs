@@ -12,7 +12,8 @@
 //!    and the weights sharpen from round to round.
 //! 5. An exact assignment ([`rototoon_base::numeric::sparse_assignment`]) takes the resulting costs. A stroke may stay without
 //!    counterpart at a price. The pairs give a new movement around each stroke. Steps 3 to 5 run up to three times. `squash`
-//!    tells shapes that are squashed from shapes that turn ([`crate::affine`]), and `turns` settles how strokes turn whose shape does not show it.
+//!    tells shapes that are squashed from shapes that turn ([`crate::affine`]), `turns` settles how strokes turn whose shape does not show it,
+//!    and `direction` lets lines that lie where they lay run as they ran.
 //! 6. `pieces` examines the strokes that are left over. Such a stroke may be a piece of a stroke that was drawn in one
 //!    go on the other drawing.
 //! 7. Where much of the ink is without a sure counterpart, the drawings may be cut into pieces in different ways.
@@ -30,6 +31,7 @@
 //! 4.
 
 mod costs;
+mod direction;
 mod fragments;
 mod joins;
 mod movement;
@@ -263,7 +265,10 @@ fn chosen(
         around = movement::around_each(a, b, &found, &held);
     }
     squash::settle(a, b, &mut found);
+    // First, so that no stroke in its place speaks for a turn.
+    direction::settle(a, b, &mut found);
     turns::settle((a, b), &ways, &mut found);
+    direction::settle(a, b, &mut found);
     Ok((found, around))
 }
 

@@ -44,7 +44,7 @@ const NEAR_HALF_A_TURN: f64 = 0.75 * std::f64::consts::PI;
 const LITTLE: f64 = 0.2;
 const SAME: f64 = 0.6;
 /// The distance, in radii of the drawing, at which stillness counts as one more stroke.
-const HELD: f64 = 0.05;
+pub(super) const HELD: f64 = 0.05;
 /// Largest number of points of which every start is tried.
 const MOST_POINTS: usize = 256;
 /// Where a start is sought near a rough one: the number of samples, and the number of starts on each side with the share of the length between
