@@ -102,10 +102,15 @@ impl Sheet {
             };
             other.points = Vec::new();
         }
-        match_strokes(&strokes, &others, by_hand, options, progress).map_err(|error| match error {
+        let found = match_strokes(&strokes, &others, by_hand, options, progress).map_err(|error| match error {
             crate::tween::matching::MatchingError::Cancelled(cancelled) => PipelineError::Cancelled(cancelled),
             other => PipelineError::Tween(format!("frames {} and {}: {other}", first.frame, second.frame)),
-        })
+        });
+        let mut found = found?;
+        found.alone[1].extend(alone);
+        found.alone[1].sort_unstable();
+        found.alone[1].dedup();
+        Ok(found)
     }
 
     /// Makes the necessary matchings and draws the requested spans. Returns the spans, and by span the matching if one

@@ -12,7 +12,7 @@
 //!
 //! In a span that flows, the strokes of the earlier key flow ahead and are exchanged half way for those of the later key, which
 //! have flowed back until then. Pairs that agree with the flow, and pairs made by hand, are not exchanged: their strokes go
-//! from one shape to the other. Strokes on given pegs go with their pegs.
+//! from one shape to the other. Strokes that a person left without counterpart vanish and appear as asked. Strokes on given pegs go with their pegs.
 
 use super::super::flow::Flow;
 use super::super::grid::Grid;
@@ -153,7 +153,8 @@ fn sampled(a: &Stroke, b: &Stroke, pair: &Pair) -> Vec<(Point, Point)> {
     resampled.points.into_iter().zip(there).collect()
 }
 
-/// A matching with only those pairs that agree with a flow or are made by hand. All other strokes are exchanged.
+/// A matching with only those pairs that agree with a flow or are made by hand. All other strokes are exchanged, but for those that a person
+/// left without counterpart.
 pub(super) fn kept(
     first: &[Stroke],
     second: &[Stroke],
@@ -174,9 +175,13 @@ pub(super) fn kept(
         pairs.iter().for_each(|pair| there[of(pair)] = false);
         (0..count).filter(|&k| there[k]).collect::<Vec<_>>()
     };
-    let exchanged = [without(first.len(), |pair| pair.from), without(second.len(), |pair| pair.to)];
+    let mut exchanged = [without(first.len(), |pair| pair.from), without(second.len(), |pair| pair.to)];
     let [vanished, appeared] = exchanged.clone();
-    (Matching { pairs, vanished, appeared, ..Matching::default() }, exchanged)
+    for (exchanged, alone) in exchanged.iter_mut().zip(&matching.alone) {
+        exchanged.retain(|stroke| !alone.contains(stroke));
+    }
+    let alone = matching.alone.clone();
+    (Matching { pairs, vanished, appeared, alone, ..Matching::default() }, exchanged)
 }
 
 /// The progress of flows: one speed through all keys.
@@ -216,8 +221,10 @@ impl Sequence {
         let back = self.tracks[t].points(k + 1).map(|points| flow.back(points, share));
         match (ahead, back) {
             (Some(ahead), Some(back)) => (ahead.iter().zip(&back).map(|(p, q)| p.lerp(*q, share)).collect(), 1.0),
-            (Some(ahead), None) => (ahead, f64::from(u8::from(share < 0.5))),
-            (None, Some(back)) => (back, f64::from(u8::from(share >= 0.5))),
+            (Some(ahead), None) if self.is_exchanged(t, k) => (ahead, f64::from(u8::from(share < 0.5))),
+            (None, Some(back)) if self.is_exchanged(t, k) => (back, f64::from(u8::from(share >= 0.5))),
+            (Some(ahead), None) => self.options.leaving.drawn(ahead, 1.0 - share),
+            (None, Some(back)) => self.options.leaving.drawn(back, share),
             (None, None) => (Vec::new(), 0.0),
         }
     }

@@ -406,3 +406,29 @@ fn a_mouth_goes_round_with_its_head_though_it_is_drawn_a_little_farther_round() 
         assert!((away - 30.0).abs() < 6.0, "frame {frame}: {away} px from the head's middle");
     }
 }
+
+#[test]
+fn strokes_that_a_person_left_without_counterpart_vanish_and_appear_as_asked() {
+    let ring = |high: f64| {
+        let at = |k: i32| Point::new(60.0, 50.0) + Point::from_angle(0.2 * f64::from(k)) * Point::new(50.0, high);
+        Stroke::new((0..31).map(at).collect(), true)
+    };
+    let line = |from: (f64, f64), to: (f64, f64)| {
+        Stroke::new((0..=8).map(|k| Point::from(from).lerp(to.into(), f64::from(k) / 8.0)).collect(), false)
+    };
+    let first = vec![ring(40.0), line((20.0, 60.0), (100.0, 60.0)), line((25.0, 30.0), (95.0, 35.0))];
+    let second = vec![line((30.0, 50.0), (90.0, 50.0)), ring(12.0)];
+    let by_hand = [Some(1), None, None].into_iter().enumerate();
+    let by_hand: Vec<_> = by_hand.map(|(from, to)| matching::HandPair { from, to }).collect();
+    let found = match_strokes(&first, &second, &by_hand, &matching::Options::default(), &Silent).unwrap();
+    assert_eq!(found.alone, [vec![1, 2], vec![0]]);
+    let spacing = Spacing::Timing(Timing::Linear);
+    let keys =
+        [(0, first), (8, second)].map(|(frame, strokes)| Key { spacing: spacing.clone(), ..key(frame, strokes) });
+    let options = Options { leaving: Leaving::Fade, ..Options::default() };
+    let sequence = Sequence::new(keys.into(), &[found], &GivenPegs::default(), &options).unwrap();
+    assert_eq!((sequence.is_held(0), sequence.exchanged_strokes(0)), (false, 0), "nothing is in doubt");
+    let mut opacities: Vec<_> = sequence.at(2).iter().map(|drawn| (drawn.track, drawn.opacity)).collect();
+    opacities.sort_by_key(|drawn| drawn.0);
+    assert_eq!(opacities, [(0, 1.0), (1, 0.75), (2, 0.75), (3, 0.25)]);
+}

@@ -207,7 +207,7 @@ impl Matching {
     }
 
     /// The share of both drawings' ink that is matched, weighted by confidence, 0 to 1. A drawing without ink counts as
-    /// matched.
+    /// matched, and so does ink that a person left without counterpart.
     pub fn sureness(&self, first: &[Stroke], second: &[Stroke]) -> f64 {
         let (mut a, mut b) = (vec![0.0f64; first.len()], vec![0.0f64; second.len()]);
         for pair in &self.pairs {
@@ -226,6 +226,8 @@ impl Matching {
             line.first.pieces.iter().for_each(|piece| a[piece.0] = line.confidence);
             line.second.pieces.iter().for_each(|piece| b[piece.0] = line.confidence);
         }
+        self.alone[0].iter().for_each(|&i| a[i] = 1.0);
+        self.alone[1].iter().for_each(|&j| b[j] = 1.0);
         0.5 * (weighted(first, &a) + weighted(second, &b))
     }
 }

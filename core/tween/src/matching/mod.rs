@@ -146,6 +146,9 @@ pub struct Matching {
     pub vanished: Vec<usize>,
     /// Strokes of the second drawing without counterpart.
     pub appeared: Vec<usize>,
+    /// Strokes of the first and of the second drawing, rising, that a person left without counterpart. They are in `vanished` and
+    /// `appeared` too. Where a person has decided about every stroke of the first drawing, what is left of the second one counts as decided.
+    pub alone: [Vec<usize>; 2],
 }
 
 /// Why drawings were not matched.
@@ -202,10 +205,15 @@ pub fn match_strokes(
     checked(first).map_err(MatchingError::First)?;
     checked(second).map_err(MatchingError::Second)?;
     let mut fixed = fixed(first.len(), second.len(), by_hand)?;
+    let decided = !fixed.is_empty() && fixed.iter().all(|fixed| *fixed != Fixed::Free);
     let unchanged = still(first, second, &mut fixed);
     let matching = stroke_by_stroke(first, second, &fixed, options, progress)?;
     let mut matching = fragments::surer(first, second, &fixed, matching, options, progress)?;
     unchanged::found(&mut matching, &unchanged);
+    matching.alone[0] = (0..first.len()).filter(|&i| fixed[i] == Fixed::Alone).collect();
+    if decided {
+        matching.alone[1].clone_from(&matching.appeared);
+    }
     progress.report("matching strokes", 1.0)?;
     Ok(matching)
 }
