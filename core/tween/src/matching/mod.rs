@@ -38,6 +38,7 @@ mod movement;
 mod outline;
 mod pieces;
 mod relaxation;
+mod setting;
 mod similarity;
 mod squash;
 mod standing;

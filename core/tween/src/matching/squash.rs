@@ -3,7 +3,7 @@
 //! An eye that closes is wide after it was tall. The best similarity lays its long side on its long side, so the eye would turn by a
 //! quarter turn. Of two explanations that fit about the same, the one that turns least is right, and the fit is that of an affine map
 //! ([`Affine`]): a shape that changes its proportions anyway may as well do so without a turn. The turn is that against the places of the
-//! strokes around it: in a figure that lies down, all turns.
+//! strokes around it: in a figure that lies down, all turns. Where the strokes around it are squashed too, `setting` decides.
 //!
 //! Points of equal number, of which an affine map leads each to its counterpart, are a copy that was changed. If they say in their own order
 //! that little turns, or that a long shape turns without a stretch (a box that tumbles), they are believed. Otherwise their order
@@ -22,6 +22,7 @@ use super::costs::Figure;
 use super::movement::held_by;
 use super::outline::{Outline, Way};
 use super::relaxation::Chosen;
+use super::setting;
 use super::similarity::Movement;
 use crate::affine::{Affine, COPY, elongation};
 
@@ -31,7 +32,7 @@ const TURN: f64 = 0.06;
 /// A way that fits the shape worse by this share of its variance fits about the same.
 const AS_WELL: f64 = 0.02;
 /// A shape that is stretched less than this keeps its proportions.
-const RIGID: f64 = 0.15;
+pub(super) const RIGID: f64 = 0.15;
 /// A shape is long if it is stretched by more than this against a round one.
 const LONG: f64 = 0.15;
 /// A way is replaced by one that is cheaper by this. Where no points say so, it must be cheaper by the second number, and differ by the turn after it:
@@ -67,12 +68,14 @@ struct Tried {
 pub(super) fn settle(a: &Figure, b: &Figure, found: &mut [Option<Chosen>]) {
     let still = Movement { turn: 0.0, scale: 1.0, source: a.middle, target: b.middle };
     let around = held_by(a, b, found, &still, HELD * a.radius);
+    let squashes = setting::squashes(a, b, found);
     for (i, choice) in found.iter_mut().enumerate() {
         let Some(choice) = choice else { continue };
         let (Some(p), Some(q)) = (&a.outlines[i], &b.outlines[choice.to]) else { continue };
         let (one, other) = (&a.strokes[i], &b.strokes[choice.to]);
         let better = match (p.closed, q.closed) {
-            (true, true) => closed((one, p), (other, q), &choice.way, around[i].turn),
+            (true, true) => closed((one, p), (other, q), &choice.way, around[i].turn)
+                .or_else(|| squashes[i]?.way_of(one, p, (other, q), &choice.way)),
             (false, false) => open((one, p), (other, q), &choice.way, around[i].turn),
             _ => None,
         };
