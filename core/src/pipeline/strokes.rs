@@ -106,10 +106,17 @@ pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<S
 /// [`PipelineError::Field`].
 pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineError> {
     let plain = plain(document);
+    let by_frame = strokes(document)?;
+    let lined: BTreeSet<Id> = by_frame.values().flatten().filter(|own| own.is_lined()).map(|own| own.id).collect();
     let mut found: BTreeMap<Id, SvgStroke> = BTreeMap::new();
-    for (frame, own) in strokes(document)?.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s)))
-    {
-        let width = mean(&own.stroke.widths).unwrap_or(plain);
+    for (frame, mut own) in by_frame.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s))) {
+        let mut width = mean(&own.stroke.widths).unwrap_or(plain);
+        // A stroke whose line is hidden on some frames keeps its fill there, under a line without width.
+        if lined.contains(&own.id) && !own.is_lined() {
+            width = 0.0;
+            own.stroke.fill_colour = Some(own.stroke.colour.take().unwrap_or_default());
+            own.stroke.fill = false;
+        }
         let known = found.entry(own.id).or_insert_with(|| SvgStroke {
             name: own.id.to_string(),
             points: BTreeMap::new(),
@@ -121,7 +128,7 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
             colours: BTreeMap::new(),
             fills: BTreeMap::new(),
             fill: own.stroke.fill,
-            lined: own.is_lined(),
+            lined: lined.contains(&own.id),
         });
         if let Some(colour) = own.stroke.fill_colour {
             known.fills.insert(frame, colour);

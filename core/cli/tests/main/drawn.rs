@@ -321,3 +321,23 @@ fn an_svg_has_the_mean_width_of_each_frame_and_says_so() {
     let (text, said) = export(traced(stroke(4, [3.0, 3.1]), stroke(5, [3.1, 3.0])));
     assert!(!text.contains("attributeName=\"stroke-width\"") && said.is_empty(), "{text} {said}");
 }
+
+#[test]
+fn a_line_that_is_hidden_on_one_frame_is_hidden_in_the_svg_file_and_its_fill_is_not() {
+    let square = json!([[2, 2], [12, 2], [12, 12], [2, 12]]);
+    let lined = json!({"track": 0, "points": square, "closed": true, "widths": [4, 4, 4, 4], "colour": [0, 0, 0],
+        "fill_colour": [1, 0, 0]});
+    let hidden = json!({"track": 0, "points": square, "closed": true, "fill": true, "colour": [1, 0, 0]});
+    for (strokes, widths) in [([&lined, &hidden], "4;0"), ([&hidden, &lined], "0;4")] {
+        let frame = |k: usize| json!({"frame": k, "strokes": [strokes[k]]});
+        let (_folder, path) = project(json!({"in_betweens": [frame(0), frame(1)]}));
+        let to = path.with_file_name("lines.svg");
+        let output =
+            Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(&path).arg("-o").arg(&to).output().unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        let text = fs::read_to_string(&to).unwrap();
+        assert!(text.contains("fill=\"#ff0000\"") && !text.contains("attributeName=\"fill\""), "{text}");
+        let width = text.split("attributeName=\"stroke-width\"").nth(1).unwrap();
+        assert!(width.split('>').next().unwrap().contains(&format!("values=\"{widths}\"")), "{width}");
+    }
+}

@@ -244,7 +244,9 @@ fn path(
     let Some(start) = shapes.iter().flatten().next().cloned() else { return };
     // Readers without animation show the first frame.
     let hidden = if shapes[0].is_none() { " visibility=\"hidden\"" } else { "" };
-    let _ = writeln!(out, "<path {style}{hidden} d=\"{start}\">\n<title>{title}</title>");
+    let faint = opacities.get(&scene.footage.first).map(|opacity| format!(" opacity=\"{}\"", decimal(*opacity, 3)));
+    let faint = faint.unwrap_or_default();
+    let _ = writeln!(out, "<path {style}{hidden}{faint} d=\"{start}\">\n<title>{title}</title>");
     let seconds = shapes.len() as f64 / scene.footage.fps;
     let filled = nearest(&shapes, &start);
     animate(out, "d", seconds, motion, &filled);
@@ -428,7 +430,15 @@ mod tests {
         let faint = SvgStroke { opacities: BTreeMap::from([(2, 0.25)]), ..stroke.clone() };
         let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
         assert!(faint.contains("attributeName=\"opacity\"") && faint.contains("values=\"1;0.25;1\""), "{faint}");
-        assert!(!text.contains("attributeName=\"opacity\""));
+        assert!(!text.contains("attributeName=\"opacity\"") && !faint.contains(" opacity=\"0.25\""));
+        let first = scene().footage.first;
+        let faint = SvgStroke {
+            points: BTreeMap::from([(first, at(0.0, 2))]),
+            opacities: BTreeMap::from([(first, 0.25)]),
+            ..stroke.clone()
+        };
+        let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
+        assert!(faint.contains(" opacity=\"0.25\" d="), "readers without animation show the first frame: {faint}");
         let wide = SvgStroke { widths: BTreeMap::from([(2, 4.0)]), ..stroke.clone() };
         let wide = svg_with_drawn(&bare, &[], &[wide], &SvgOptions::default());
         assert!(wide.contains("attributeName=\"stroke-width\"") && wide.contains("values=\"2.5;4\""), "{wide}");
