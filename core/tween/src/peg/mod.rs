@@ -22,6 +22,7 @@
 
 pub mod propose;
 mod timing;
+mod tree;
 
 pub use timing::{Timing, TimingError};
 pub(crate) use timing::{hermite, monotone_slope};

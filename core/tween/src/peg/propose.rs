@@ -6,7 +6,7 @@
 //! joint movement explains both best. It ends when every join would leave more than a small share of their size
 //! unexplained.
 //!
-//! The largest group is the root. Every other group hangs on the larger group to which it stays nearest. A group that no
+//! The largest group is the root, and every other group hangs on one to which it stays near, as a tree ([`tree`](super::tree)). A group that no
 //! two neighbouring keys have hangs on the nearest one whose movement is known, so that it goes with what is around it. If a group
 //! turns relative to its parent, its hinge is the fixed point of this relative turn, provided that the point is near
 //! the strokes of both. Otherwise the hinge is the place where the two groups meet, or the middle of the group if they
@@ -16,7 +16,7 @@
 //! Limits: among few strokes, those that happen to move alike become one group, however far apart they are. With more
 //! than [`ALL_PAIRS`] strokes only near ones are joined.
 
-use super::{Peg, PegKey, PegTree, Timing};
+use super::{Peg, PegKey, PegTree, Timing, tree};
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polyline};
 use std::collections::{BTreeSet, BinaryHeap};
@@ -27,8 +27,10 @@ const SAMPLES: usize = 16;
 pub const ALL_PAIRS: usize = 200;
 /// Number of neighbours with which a stroke may be joined in larger drawings.
 const NEAREST: usize = 8;
-/// Number of nearest larger groups that are tried as a parent.
+/// Number of nearest groups that are tried as a parent.
 const PARENTS: usize = 16;
+/// A group carries what is up to this share's inverse longer than itself.
+const CARRIES: f64 = 0.25;
 /// Largest number of samples of a group from which its distance from others is computed.
 const MOST_PLACES: usize = 640;
 /// Root mean square, in pixels, that a join may always leave unexplained.
@@ -293,46 +295,44 @@ fn meeting(a: &[usize], b: &[usize], samples: &[Vec<Option<Vec<Point>>>], key: u
     best.map(|(d, place)| (d.sqrt(), place))
 }
 
-/// Makes each group hang on one of the larger groups before it: the one to which it stays nearest.
+/// Makes groups hang on each other, as a tree that begins with the first of them.
 fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
     let keys = samples.iter().map(Vec::len).max().unwrap_or(0);
     let middles: Vec<Point> = all
         .iter()
         .map(|g| g.members.iter().map(|&i| middle(&samples[i])).sum::<Point>() / g.members.len() as f64)
         .collect();
-    let mut groups = Vec::with_capacity(all.len());
-    for (g, group) in all.iter().enumerate() {
-        let mut before: Vec<usize> = (0..g).filter(|&other| group.moves() || all[other].moves()).collect();
-        if before.is_empty() {
-            before.extend(0..g);
+    let grid = super::super::grid::Grid::new(&middles);
+    let near: Vec<Vec<usize>> = middles.iter().map(|middle| grid.nearest(*middle, PARENTS + 1)).collect();
+    // What no drawing shows moving hangs on what moves, however long it is.
+    let some_move = all.iter().any(Growing::moves);
+    let carries = |parent: usize, child: usize| {
+        let (parent, child) = (&all[parent], &all[child]);
+        if child.moves() {
+            parent.moves() && parent.length >= CARRIES * child.length
+        } else {
+            parent.moves() || !some_move
         }
-        let nearer = |a: &usize, b: &usize| {
-            let from = |other: usize| middles[other].distance_squared(middles[g]);
-            from(*a).total_cmp(&from(*b)).then(a.cmp(b))
-        };
-        if before.len() > PARENTS {
-            before.select_nth_unstable_by(PARENTS, nearer);
-            before.truncate(PARENTS);
-        }
-        before.sort_by(nearer);
-        let mut best: Option<(f64, usize, Point)> = None;
-        for parent in before {
-            let met: Vec<(f64, Point)> =
-                (0..keys).filter_map(|key| meeting(&group.members, &all[parent].members, samples, key)).collect();
-            let (Some(worst), Some(first)) = (met.iter().map(|m| m.0).reduce(f64::max), met.first()) else { continue };
-            if best.is_none_or(|(least, ..)| worst < least) {
-                best = Some((worst, parent, first.1));
-            }
-        }
-        best = best.filter(|&(_, parent, _)| !group.moves() || goes_along(group, &all[parent]));
-        let pivot = best.map_or(middles[g], |(gap, parent, place)| {
+    };
+    let meets = |a: usize, b: usize| -> Option<(f64, Point)> {
+        let met: Vec<(f64, Point)> =
+            (0..keys).filter_map(|key| meeting(&all[a].members, &all[b].members, samples, key)).collect();
+        Some((met.iter().map(|met| met.0).reduce(f64::max)?, met.first()?.1))
+    };
+    let grown = tree::grown(all.len(), &near, carries, meets);
+    let mut place = vec![0; all.len()];
+    grown.iter().enumerate().for_each(|(k, &(g, _))| place[g] = k);
+    let group = |(g, on): (usize, Option<(usize, (f64, Point))>)| {
+        let group = &all[g];
+        let on = on.filter(|&(parent, _)| !group.moves() || goes_along(group, &all[parent]));
+        let pivot = on.map_or(middles[g], |(parent, (gap, place))| {
             let reach = HINGE_REACH * group.radius().max(1.0);
             let on_both = |p: Point| [group, &all[parent]].into_iter().all(|g| g.distance(p, samples) <= reach + gap);
             hinge(group, &all[parent]).filter(|&p| on_both(p)).unwrap_or(if gap <= reach { place } else { middles[g] })
         });
-        groups.push(Group { members: group.members.clone(), parent: best.map(|b| b.1), pivot });
-    }
-    groups
+        Group { members: group.members.clone(), parent: on.map(|on| place[on.0]), pivot }
+    };
+    grown.into_iter().map(group).collect()
 }
 
 /// Whether a group stays near its own way if it hangs on a parent, between all neighbouring keys that show both. Half way
