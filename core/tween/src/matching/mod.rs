@@ -32,6 +32,7 @@
 
 mod costs;
 mod direction;
+mod doubt;
 mod fragments;
 mod joins;
 mod movement;
@@ -255,7 +256,7 @@ fn chosen(
 ) -> Result<(Vec<Option<Chosen>>, Vec<Movement>), MatchingError> {
     let ways = Ways::new(a, b);
     let whole = movement::of_whole(a, b, &ways, fixed, options);
-    let held = whole.movement;
+    let (held, others) = (whole.movement, whole.others);
     let neighbours = relaxation::Neighbours::new(a);
     let mut around = vec![held; fixed.len()];
     let mut found = Vec::new();
@@ -278,6 +279,7 @@ fn chosen(
     direction::settle(a, b, &mut found);
     turns::settle((a, b), &ways, &mut found);
     direction::settle(a, b, &mut found);
+    doubt::lower(&mut found, &others);
     Ok((found, around))
 }
 

@@ -47,6 +47,14 @@ pub(super) struct Whole {
     /// The counterparts under that movement, then those under the movements around each stroke that follow from them.
     /// `None` where the movement was tried on some strokes only.
     pub found: Option<[Vec<Option<Chosen>>; 2]>,
+    /// What matching found under the other movements that were tried.
+    pub others: Vec<Other>,
+}
+
+/// Another assignment of the strokes, and by how much it costs more than the one that is taken.
+pub(super) struct Other {
+    pub more: f64,
+    pub to: Vec<Option<usize>>,
 }
 
 /// Finds the movement of the complete drawing.
@@ -72,6 +80,8 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
         let second = relaxation::relaxed(&neighbours, &b, &rows, options);
         (second.energy + prior(&a, movement), [first.chosen, second.chosen])
     };
+    let to = |chosen: &[Option<Chosen>]| chosen.iter().map(|c| c.as_ref().map(|c| c.to)).collect::<Vec<_>>();
+    let mut tried: Vec<Other> = Vec::new();
     let mut best: Option<(f64, Whole)> = None;
     for (score, movement) in scores {
         // The score is a lower bound of the energy. This movement and all later ones cannot be better.
@@ -79,12 +89,18 @@ pub(super) fn of_whole(a: &Figure, b: &Figure, ways: &Ways, fixed: &[Fixed], opt
             break;
         }
         let (energy, found) = energy(&movement);
+        tried.push(Other { more: energy, to: to(&found[1]) });
         if best.as_ref().is_none_or(|(least, _)| energy < *least) {
-            best = Some((energy, Whole { movement, found: all.then_some(found) }));
+            best = Some((energy, Whole { movement, found: all.then_some(found), others: Vec::new() }));
         }
     }
     let still = Movement { turn: 0.0, scale: 1.0, source: Point::ZERO, target: Point::ZERO };
-    best.map_or(Whole { movement: still, found: None }, |(_, whole)| whole)
+    let Some((least, mut whole)) = best else {
+        return Whole { movement: still, found: None, others: Vec::new() };
+    };
+    tried.iter_mut().for_each(|other| other.more -= least);
+    whole.others = tried;
+    whole
 }
 
 /// Whether two movements take the drawing to about the same place.

@@ -260,9 +260,13 @@ fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Optio
     let (own, to) = (costs[i][k], rows.labels[i][k].to);
     let others = rows.labels[i].iter().zip(&costs[i]).filter(|(label, _)| label.to != to).map(|(_, &cost)| cost);
     let next = others.fold(options.max_cost + SUPPORT, f64::min);
-    let margin = 1.0 / (1.0 + (-4.0 * (next - own) / SURE).exp());
     let fit = (1.0 - own / (options.max_cost + SUPPORT)).clamp(0.0, 1.0);
-    margin * fit.sqrt()
+    margin(next - own) * fit.sqrt()
+}
+
+/// How sure a choice is where another one costs more by this, 0 to 1.
+pub(super) fn margin(more: f64) -> f64 {
+    1.0 / (1.0 + (-4.0 * more / SURE).exp())
 }
 
 /// The neighbours of each stroke of the first drawing.
