@@ -4,8 +4,7 @@
 //! about it may be wrong. But an arm that is drawn alone turns about its shoulder, and somebody who leans over turns about the feet. There the
 //! fixed point lies on the drawing, at the end of something long. It is a joint, and it stays where it is.
 //!
-//! A forearm that is drawn with more lines than its upper arm hangs on the body, and the upper arm on it. So what hangs on a group counts as its
-//! own, and its movement is that against what it hangs on itself.
+//! A forearm hangs on its upper arm. So what hangs on a group counts as its own, and its movement is that against what it hangs on itself.
 //!
 //! Round things are left out: a wheel that rolls turns about a point of its rim, too, and does not swing about it.
 
