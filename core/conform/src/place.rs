@@ -4,9 +4,10 @@
 //! of both pictures equal, and, unless one of these agrees by 0.75 or more, what plates are usually scaled by. Of each correlation the highest place is a candidate, beside those that a facility makes most often:
 //! both pictures on each other, corner on corner, and centre on centre. Each candidate is judged by what both pictures show there,
 //!
-//!     Σ n · n' / √(Σ |n|² Σ |n'|²)
+//!     a = Σ n · n' / √(Σ |n|² Σ |n'|²)
 //!
-//! The best one over all pairs of pictures wins. A background that stands still pulls to the right place also where the drawings differ.
+//! with directions blurred by one place, so that half a place does not matter. Few places agree by chance, so what is compared is a · c^¼, with the share c of
+//! the new picture that both show. The best one over all pairs of pictures wins. A background that stands still pulls to the right place also where the drawings differ.
 
 use crate::grid::{Grid, directions};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
@@ -14,9 +15,12 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::conform::Placement;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::correlation::{Correlator, Spectrum};
+use rototoon_image::gaussian::{Border, blur};
 
 /// Places of the grid of the search.
 const PLACES: f64 = 14_400.0;
+/// Standard deviation of the blur of directions, in places.
+const SOFTNESS: f64 = 1.0;
 /// What a plain candidate may be worse by than one that correlation found.
 const PLAIN: f32 = 0.02;
 /// Agreement from which no further scale is tried.
@@ -26,13 +30,15 @@ const FIRST: usize = 3;
 /// Least share of the smaller picture that both pictures must show.
 const OVERLAP: f64 = 0.25;
 
-/// A placement and how well the pictures agree there, at most 1.
+/// A placement and how well the pictures agree there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// The placement.
     pub placement: Placement,
-    /// The agreement.
+    /// The agreement, at most 1.
     pub agreement: f32,
+    /// What is compared of it.
+    score: f32,
 }
 
 /// The scales that are likely for pictures of these sizes, each once: first those that make heights or widths equal, and 1.
@@ -60,14 +66,15 @@ pub fn found(old: &[&Raster<Colour>], new: &[&Raster<Colour>], scales: &[f64], s
     let (first, target) = (old.first()?, new.first()?);
     let size = [first.width(), first.height()];
     let grid = Grid::of(target.width(), target.height(), PLACES);
-    let news: Vec<Raster<[f32; 2]>> = new.par_iter().map(|picture| directions(&grid.of_new(picture))).collect();
+    let soft = |luma: &Raster<f32>| blur(&directions(luma), SOFTNESS, Border::Replicate);
+    let news: Vec<Raster<[f32; 2]>> = new.par_iter().map(|picture| soft(&grid.of_new(picture))).collect();
     let mut best: Option<Found> = None;
     for (tried, &scale) in scales.iter().enumerate() {
         if tried >= FIRST && best.is_some_and(|best| best.agreement >= ENOUGH) {
             break;
         }
         let plain = plain(scale, size, [target.width(), target.height()], shift);
-        let placed = old.iter().map(|picture| directions(&grid.of_old_alone(picture, scale))).collect::<Vec<_>>();
+        let placed = old.iter().map(|picture| soft(&grid.of_old_alone(picture, scale))).collect::<Vec<_>>();
         let mut candidates: Vec<(Placement, f32)> = plain.into_iter().map(|placement| (placement, PLAIN)).collect();
         if shift.is_none() {
             let peaks = peaks(&news, &placed);
@@ -77,12 +84,14 @@ pub fn found(old: &[&Raster<Colour>], new: &[&Raster<Colour>], scales: &[f64], s
             .par_iter()
             .map(|&(placement, bonus)| {
                 let own = |new| placed.iter().map(move |old| agreement(old, new, &grid, &placement));
-                let agreement = news.iter().flat_map(own).fold(0.0f32, f32::max) + bonus;
-                (agreement > bonus).then_some(Found { placement, agreement })
+                let best = |a: [f32; 2], b: [f32; 2]| if b[0] > a[0] { b } else { a };
+                let [agreement, share] = news.iter().flat_map(own).fold([0.0; 2], best);
+                let score = agreement * share.powf(0.25) + bonus;
+                (agreement > 0.0).then_some(Found { placement, agreement, score })
             })
             .collect();
         for found in judged.into_iter().flatten() {
-            if best.is_none_or(|best| found.agreement > best.agreement) {
+            if best.is_none_or(|best| found.score > best.score) {
                 best = Some(found);
             }
         }
@@ -151,8 +160,8 @@ fn peak(sum: &Raster<f32>, new: [usize; 2]) -> Point {
     )
 }
 
-/// How well an old picture agrees with a new one at a placement; 0 where both show too little of each other.
-fn agreement(old: &Raster<[f32; 2]>, new: &Raster<[f32; 2]>, grid: &Grid, placement: &Placement) -> f32 {
+/// How well an old picture agrees with a new one at a placement, and the share of the new one that both show. The agreement is 0 where that is too little.
+fn agreement(old: &Raster<[f32; 2]>, new: &Raster<[f32; 2]>, grid: &Grid, placement: &Placement) -> [f32; 2] {
     let shift = (placement.shift / grid.step).round();
     let (dx, dy) = (shift.x as isize, shift.y as isize);
     let range = |shift: isize, old: usize, new: usize| {
@@ -162,8 +171,9 @@ fn agreement(old: &Raster<[f32; 2]>, new: &Raster<[f32; 2]>, grid: &Grid, placem
     let columns = range(dx, old.width(), new.width());
     let rows = range(dy, old.height(), new.height());
     let smaller = old.data().len().min(new.data().len()) as f64;
-    if ((columns.len() * rows.len()) as f64) < OVERLAP * smaller {
-        return 0.0;
+    let overlap = (columns.len() * rows.len()) as f64;
+    if overlap < OVERLAP * smaller {
+        return [0.0; 2];
     }
     let (mut both, mut ours, mut theirs) = (0.0f32, 0.0f32, 0.0f32);
     for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
@@ -173,7 +183,8 @@ fn agreement(old: &Raster<[f32; 2]>, new: &Raster<[f32; 2]>, grid: &Grid, placem
         ours += a[0] * a[0] + a[1] * a[1];
         theirs += b[0] * b[0] + b[1] * b[1];
     }
-    if ours > 0.0 && theirs > 0.0 { both / (ours * theirs).sqrt() } else { 0.0 }
+    let agreement = if ours > 0.0 && theirs > 0.0 { both / (ours * theirs).sqrt() } else { 0.0 };
+    [agreement, (overlap / new.data().len() as f64) as f32]
 }
 
 #[cfg(test)]
