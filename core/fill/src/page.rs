@@ -10,6 +10,11 @@ use rototoon_lines::{Drawing, Options, Stroke, ink};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+/// Least confidence with which paper is known.
+const SURE: f64 = 0.5;
+/// Least share of itself that paper keeps where a click is parted from it.
+const KEPT: f64 = 0.75;
+
 /// A drawing with its regions.
 pub struct Page {
     pub(crate) lines: Drawing,
@@ -108,15 +113,49 @@ impl Page {
     /// Leaves the regions at the edge of the picture without paint that have no colour: on a drawing that is painted otherwise, they are the
     /// paper around it, and stay so on other drawings.
     pub fn leave_paper(&self, paint: &mut Paint) {
-        let (width, height) = (self.regions.inside.width(), self.regions.inside.height());
-        let rows = [0, height.saturating_sub(1)].into_iter().flat_map(|y| (0..width).map(move |x| (x, y)));
-        let columns = [0, width.saturating_sub(1)].into_iter().flat_map(|x| (0..height).map(move |y| (x, y)));
-        let outer: BTreeSet<usize> = rows.chain(columns).map(|(x, y)| self.regions.inside.get(x, y) as usize).collect();
-        for region in outer.into_iter().filter(|&region| region > 0) {
+        for region in self.outer() {
             if paint.colour(region).is_none() {
                 paint.give(region, paint.blank);
             }
         }
+    }
+
+    /// Parts what is clicked from paper into which it leaks. `paint` is what is known of the page. Where it surely leaves a region at the edge of the picture
+    /// without paint, a click with a colour means what a gap joins to that paper. So the region is [split](Regions::split) between the click and
+    /// its deepest place, if a quarter of it at most is parted off: in open paper the click means the paper. True if anything was split. The paint does not fit
+    /// the page then.
+    pub fn part_from_paper(&mut self, paint: &Paint, clicks: &[Click]) -> bool {
+        let outer = self.outer();
+        let sure = |region: usize| paint.colour(region) == Some(paint.blank) && paint.confidence(region) >= SURE;
+        let mut within: BTreeMap<usize, Vec<Point>> = BTreeMap::new();
+        for click in clicks.iter().filter(|click| click.colour.is_some()) {
+            if let Some(region) = self.regions.at(click.at).filter(|region| outer.contains(region) && sure(*region)) {
+                within.entry(region).or_default().push(click.at);
+            }
+        }
+        let mut split = false;
+        for (region, places) in within {
+            let mut parted = self.regions.clone();
+            let Some(deepest) = parted.deepest(region) else { continue };
+            parted.split(region, &[vec![deepest], places].concat());
+            let area = |regions: &Regions| regions.inside.data().iter().filter(|own| **own as usize == region).count();
+            if parted.count > self.regions.count && area(&parted) as f64 >= KEPT * area(&self.regions) as f64 {
+                (self.regions, split) = (parted, true);
+            }
+        }
+        if split {
+            self.layout = Layout::new(&self.regions);
+        }
+        split
+    }
+
+    /// The regions at the edge of the picture.
+    fn outer(&self) -> BTreeSet<usize> {
+        let inside = &self.regions.inside;
+        let (width, height) = (inside.width(), inside.height());
+        let rows = [0, height.saturating_sub(1)].into_iter().flat_map(|y| (0..width).map(move |x| (x, y)));
+        let columns = [0, width.saturating_sub(1)].into_iter().flat_map(|x| (0..height).map(move |y| (x, y)));
+        rows.chain(columns).map(|(x, y)| inside.get(x, y) as usize).filter(|&region| region > 0).collect()
     }
 
     /// The clicks that lie in a region which a later click has given another colour: no line was found between the two.
@@ -244,6 +283,31 @@ mod tests {
         let mut page = page();
         let (_, missed) = page.painted(&[Click { at: Point::new(500.0, 3.0), colour: Some(0) }], 1, &mut 0);
         assert_eq!(missed, [0]);
+    }
+
+    #[test]
+    fn a_click_is_parted_from_the_paper_into_which_it_leaks() {
+        // A cuff with an open corner, on paper.
+        let ink = |x: usize, y: usize| {
+            let edge = x.abs_diff(60).max(y.abs_diff(40)) == 14;
+            edge && !(x > 70 && (36..40).contains(&y))
+        };
+        let thick = |x: usize, y: usize| (0..2).any(|u| (0..2).any(|v| x >= u && y >= v && ink(x - u, y - v)));
+        let picture = Arc::new(Raster::from_fn(160, 120, |x, y| if thick(x, y) { [0.05; 3] } else { [1.0; 3] }));
+        let mut page = Page::new(picture, &Options::default());
+        let mut known = Paint::nothing(page.regions(), 1);
+        page.leave_paper(&mut known);
+        let (cuff, paper) = (Point::new(60.0, 40.0), Point::new(20.0, 100.0));
+        let clicked = |at: Point| [Click { at, colour: Some(0) }];
+        assert_eq!(page.regions.at(cuff), page.regions.at(paper), "it leaks");
+        let whole = page.regions();
+        assert!(!page.part_from_paper(&known, &clicked(paper)), "open paper stays whole");
+        known.confidence.fill(0.3);
+        assert!(!page.part_from_paper(&known, &clicked(cuff)), "that it is paper is not sure");
+        known.confidence.fill(0.9);
+        assert!(page.part_from_paper(&known, &clicked(cuff)));
+        assert_eq!(page.regions(), whole + 1);
+        assert_ne!(page.regions.at(cuff), page.regions.at(paper));
     }
 
     #[test]

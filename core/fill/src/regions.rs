@@ -70,6 +70,17 @@ impl Regions {
         Some(self.nearest.get(x, y) as usize).filter(|&region| region > 0 && near)
     }
 
+    /// The middle of the pixel of a region that is farthest from what is not the region.
+    pub fn deepest(&self, region: usize) -> Option<Point> {
+        let own = self.inside.map(|label| label as usize == region);
+        let depth = distance::inside(&own);
+        let cells = 0..depth.data().len();
+        // Of equal ones the first is taken.
+        let at = cells.rev().max_by(|&a, &b| depth.data()[a].total_cmp(&depth.data()[b]))?;
+        let place = Point::new((at % depth.width()) as f64 + 0.5, (at / depth.width()) as f64 + 0.5);
+        (depth.data()[at] > 0.0).then_some(place)
+    }
+
     /// Splits a region between places that lie in it. Each place gets a region of its own: the first one keeps the number.
     /// A flood begins where the way up from its place ends, so a place in a corner counts as much as one in the middle.
     /// Places whose ways end at one summit stay together: nothing is between them.

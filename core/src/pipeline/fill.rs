@@ -272,7 +272,13 @@ impl Painting<'_> {
         let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
-        let (paint, missed) = match carry(&known.sources(), &mut page, &mut self.next) {
+        let numbers = self.next;
+        let mut carried = carry(&known.sources(), &mut page, &mut self.next);
+        if carried.as_ref().is_some_and(|paint| page.part_from_paper(paint, &own)) {
+            self.next = numbers;
+            carried = carry(&known.sources(), &mut page, &mut self.next);
+        }
+        let (paint, missed) = match carried {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };

@@ -194,6 +194,26 @@ fn a_click_on_a_later_frame_mends_it_and_what_follows() {
 }
 
 #[test]
+fn a_click_that_leaks_into_the_paper_does_not_flood_it() {
+    // A box with a disc in it. From frame 2 on a cuff hangs below it whose outline is open on one side.
+    let ink = |frame: FrameNumber, p: Point| {
+        let cuff = boxed(p, (60.0 + 6.0 * f64::from(frame), 133.0), (11.0, 11.0));
+        let open = p.x > 66.0 + 6.0 * f64::from(frame) && (p.y - 133.0).abs() < 2.5;
+        if frame < 2 || open { moving(frame, p) } else { moving(frame, p).min(cuff) }
+    };
+    let clicks = [click((25.0, 75.0), RED), click((60.0, 75.0), BLUE)];
+    let green = [0.0, 1.0, 0.0];
+    let mut film = Film::new(5, ink).clicked(&[(0, &clicks), (2, &[click((72.0, 133.0), green)])]);
+    film.fill().unwrap();
+    for frame in 2..=5 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        assert_eq!(film.at(frame, (x, 133.0)).map(|own| own.colour), Some(green), "frame {frame}");
+        assert_eq!(film.at(frame, (190.0, 10.0)), None, "frame {frame}: the paper stays without paint");
+        assert_eq!(film.at(frame, (x - 30.0, 75.0)).map(|own| own.colour), Some(RED), "frame {frame}");
+    }
+}
+
+#[test]
 fn corrections_hold_to_the_end_of_the_film() {
     let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
     let (disc, rest) = ([click((x(2), 75.0), RED)], [click((x(5) - 35.0, 75.0), BLUE)]);

@@ -322,7 +322,7 @@ fn hung(all: &[Growing], samples: &[Vec<Option<Vec<Point>>>]) -> Vec<Group> {
     let grown = tree::grown(all.len(), &near, carries, meets);
     let mut place = vec![0; all.len()];
     grown.iter().enumerate().for_each(|(k, &(g, _))| place[g] = k);
-    let group = |(g, on): (usize, Option<(usize, (f64, Point))>)| {
+    let group = |(g, on): tree::Hanging| {
         let group = &all[g];
         let on = on.filter(|&(parent, _)| !group.moves() || goes_along(group, &all[parent]));
         let pivot = on.map_or(middles[g], |(parent, (gap, place))| {
