@@ -3,7 +3,9 @@
 //! The grid belongs to the new picture: a place p of it is at p / `step`. The old picture is drawn onto it by the placement. With g the gradient of
 //! the smoothed luma, a place has the direction
 //!
-//!     n = g / √(|g|² + κ²),   κ = 0.03
+//! ```text
+//! n = g / √(|g|² + κ²),   κ = 0.03
+//! ```
 //!
 //! So a line counts the same however dark a grade makes it, and grain far below κ does not count.
 

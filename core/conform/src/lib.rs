@@ -42,8 +42,10 @@ const CANDIDATES: usize = 12;
 const SEARCHED: usize = 24;
 /// Pairs of frames by which the placement is refined.
 const PAIRS: usize = 10;
-/// Least agreement of a placement.
-const AGREEMENT: f32 = 0.3;
+/// Least score of a placement.
+const LEAST_SCORE: f32 = 0.3;
+/// Least number of blocks that both pictures must show: nothing differs where nothing is compared.
+const LEAST_BLOCKS: usize = 4;
 /// Largest number of pairs of frames that are compared.
 const MOST: usize = 25_000_000;
 
@@ -167,7 +169,7 @@ fn placed(old: Plate, new: Plate, given: &Given) -> Result<Placement, ConformErr
     let targets = new.pictures(&searched, "new")?;
     let [olds, news] = [&pictures, &targets].map(|all| all.iter().map(Arc::as_ref).collect::<Vec<_>>());
     let found = place::found(&olds, &news, &scales, given.shift);
-    let found = found.filter(|found| found.agreement >= AGREEMENT).ok_or(ConformError::NothingInCommon)?;
+    let found = found.filter(|found| found.score >= LEAST_SCORE).ok_or(ConformError::NothingInCommon)?;
     Ok(found.placement)
 }
 
@@ -224,6 +226,9 @@ fn refined(
 fn shown(old: Plate, new: Plate, placement: &Placement, span: &Span) -> Result<(FrameMap, Raster<f32>), ConformError> {
     let grid = Grid::of(new.footage.width, new.footage.height, PLACES);
     let blocks = Blocks::within(&grid, grid.covered(old.size(), placement));
+    if blocks.count() < LEAST_BLOCKS {
+        return Err(ConformError::NothingInCommon);
+    }
     let (all, done) = (old.len() + new.len(), AtomicUsize::new(0));
     let told = |look: Look| {
         let share = (done.fetch_add(1, Ordering::Relaxed) + 1) as f64 / all as f64;

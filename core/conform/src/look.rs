@@ -2,7 +2,9 @@
 //!
 //! The grid is cut into blocks of 8 × 8 places. The difference of two pictures is that of the block that differs most:
 //!
-//!     d = max over blocks of Σ |n − n'|² / 64
+//! ```text
+//! d = max over blocks of Σ |n − n'|² / 64
+//! ```
 //!
 //! The mean over the picture would not see a hand that was drawn anew before a painted background. Directions are kept as bytes, so that a
 //! thousand frames take some 115 MB, and a thousand times a thousand comparisons some seconds.

@@ -4,7 +4,9 @@
 //! of both pictures equal, and, unless one of these agrees by 0.75 or more, what plates are usually scaled by. Of each correlation the highest place is a candidate, beside those that a facility makes most often:
 //! both pictures on each other, corner on corner, and centre on centre. Each candidate is judged by what both pictures show there,
 //!
-//!     a = Σ n · n' / √(Σ |n|² Σ |n'|²)
+//! ```text
+//! a = Σ n · n' / √(Σ |n|² Σ |n'|²)
+//! ```
 //!
 //! with directions blurred by one place, so that half a place does not matter. Few places agree by chance, so what is compared is a · c^¼, with the share c of
 //! the new picture that both show. The best one over all pairs of pictures wins. A background that stands still pulls to the right place also where the drawings differ.
@@ -37,8 +39,8 @@ pub struct Found {
     pub placement: Placement,
     /// The agreement, at most 1.
     pub agreement: f32,
-    /// What is compared of it.
-    score: f32,
+    /// What is compared of it: the agreement, less where the pictures show little of each other.
+    pub score: f32,
 }
 
 /// The scales that are likely for pictures of these sizes, each once: first those that make heights or widths equal, and 1.

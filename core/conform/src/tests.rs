@@ -154,6 +154,14 @@ fn another_film_is_refused() {
 }
 
 #[test]
+fn pictures_that_show_nothing_of_each_other_have_nothing_in_common() {
+    let old = film(1, &[0, 1, 2, 3], &PLAIN);
+    let given = Given { scale: Some(1.0), shift: Some(Point::new(155.0, 0.0)) };
+    let error = compare(old.plate(), old.plate(), &given, &Silent).unwrap_err();
+    assert_eq!(error, ConformError::NothingInCommon);
+}
+
+#[test]
 fn the_work_can_be_cancelled() {
     struct Never;
     impl Progress for Never {
