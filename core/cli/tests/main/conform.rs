@@ -2,6 +2,7 @@
 
 use crate::cartoon::{Cartoon, bad, draw, good, read, text};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::fs;
 
 /// The cartoon again at its own size from frame 101 on, without its frame 2, in a folder of its own.
@@ -28,7 +29,9 @@ fn a_document_moves_to_footage_that_is_delivered_again() {
     let moved = read(&out);
     assert_eq!(moved["footage"]["pattern"], json!(pattern), "a complete path stays");
     assert_eq!((&moved["footage"]["first"], &moved["footage"]["last"]), (&json!(101), &json!(106)));
-    let keys = |document: &serde_json::Value| document["parts"][0]["keys"].as_object().unwrap().clone();
+    let keys = |document: &serde_json::Value| -> BTreeMap<String, Vec<[f64; 2]>> {
+        serde_json::from_value(document["parts"][0]["keys"].clone()).unwrap()
+    };
     let (old, new) = (keys(&read(&document)), keys(&moved));
     assert_eq!(new.keys().collect::<Vec<_>>(), ["101", "106"]);
     assert_eq!((&new["101"], &new["106"]), (&old["0"], &old["6"]));
