@@ -92,7 +92,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     def _without_lines(self, ob) -> str:
         """What the object has beside lines, in words; empty if it has nothing else."""
         contours = any(gp.has_strokes(layer) for layer in gp.layers(ob, ob.rototoon.contours_layer))
-        paint = any(st.is_paint(ob, layer) for layer in ob.data.layers)
+        paint = any(st.is_paint(ob, layer) for layer in gp.every_layer(ob))
         return " and ".join(filter(None, ("contours" if contours else "", "paint" if paint else "")))
 
     def _add_lines(self, ob, document: dict, size: tuple[int, int] | None = None) -> list[str]:
