@@ -6,7 +6,7 @@
 //! joint movement explains both best. It ends when every join would leave more than a small share of their size
 //! unexplained.
 //!
-//! The largest group is the root, and every other group hangs on one to which it stays near, as a tree ([`tree`](super::tree)). A group that no
+//! The largest group is the root, and every other group hangs on one to which it stays near, as a tree ([`tree`]). A group that no
 //! two neighbouring keys have hangs on the nearest one whose movement is known, so that it goes with what is around it. If a group
 //! turns relative to its parent, its hinge is the fixed point of this relative turn, provided that the point is near
 //! the strokes of both. Otherwise the hinge is the place where the two groups meet, or the middle of the group if they
