@@ -130,10 +130,13 @@ pub fn compare(old: Plate, new: Plate, given: &Given, progress: &dyn Progress) -
     }
     progress.report("Placing", 0.0)?;
     let coarse = placed(old, new, given)?;
-    let (_, differences) = shown(old, new, &coarse, &Span { progress, from: 0.1, to: 0.5 })?;
+    let (first, differences) = shown(old, new, &coarse, &Span { progress, from: 0.1, to: 0.5 })?;
     progress.report("Placing", 0.5)?;
     let placement = refined(old, new, given, coarse, &differences)?;
-    let (map, _) = shown(old, new, &placement, &Span { progress, from: 0.6, to: 1.0 })?;
+    let map = match placement == coarse {
+        true => first,
+        false => shown(old, new, &placement, &Span { progress, from: 0.6, to: 1.0 })?.0,
+    };
     if !map.sources().values().any(|source| matches!(source, Source::Same(_))) {
         return Err(ConformError::NothingInCommon);
     }
