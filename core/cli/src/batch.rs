@@ -157,7 +157,8 @@ fn work(
     let threads = if asked("threads") == 0 { (cores / jobs).max(1) } else { asked("threads") };
     let memory = given.get_one::<u64>("memory").map_or_else(Budget::of_machine, |bytes| Budget::new(*bytes));
     let all = shots.len();
-    line("note", &format!("{all} shots, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));
+    let shots_word = if all == 1 { "shot" } else { "shots" };
+    line("note", &format!("{all} {shots_word}, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));
     let program =
         std::env::current_exe().map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
     let options = Options {
@@ -243,9 +244,10 @@ fn write_summary(summary: &Summary, folder: &Path) -> Result<Vec<Outcome>, Failu
     page::write(summary, folder)?;
     let of = |id: &str| summary.count(id);
     let counts = format!(
-        "{} good, {} want keys, {} failed, {} not run",
+        "{} good, {} {} keys, {} failed, {} not run",
         of("good"),
         of("wants_keys"),
+        if of("wants_keys") == 1 { "wants" } else { "want" },
         of("failed"),
         of("not_run")
     );

@@ -19,8 +19,8 @@ use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::correlation::{Correlator, Spectrum};
 use rototoon_image::gaussian::{Border, blur};
 
-/// Places of the grid of the search.
-const PLACES: f64 = 14_400.0;
+/// Places of the grid of the search. Of a coarser one, a place is wider than a pencil line, and a candidate some pixels beside agrees as well.
+const PLACES: f64 = 57_600.0;
 /// Standard deviation of the blur of directions, in places.
 const SOFTNESS: f64 = 1.0;
 /// What a plain candidate may be worse by than one that correlation found.

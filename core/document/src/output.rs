@@ -61,6 +61,7 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
         return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
     }
     let folder = parent(&target);
+    there(folder)?;
     remove_left_over(folder);
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).rand_bytes(RANDOM);
@@ -108,9 +109,24 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
         Ok(_) => tempfile::tempfile_in(parent(&real(path)?)).map(drop),
         // A name that is too long, or a folder that may not be entered.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        Err(_) => tempfile::tempfile_in(parent(&end_of_links(path)?)).map(drop),
+        Err(_) => {
+            let target = end_of_links(path)?;
+            there(parent(&target))?;
+            tempfile::tempfile_in(parent(&target)).map(drop)
+        }
     };
     probe().map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+/// An error that names the folder, if there is none. That of the system would name a temporary file in it.
+fn there(folder: &Path) -> io::Result<()> {
+    match fs::metadata(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let message = format!("there is no folder \"{}\"", folder.display());
+            Err(io::Error::new(io::ErrorKind::NotFound, message))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The path that symbolic links at `path` lead to, also where no file is there.

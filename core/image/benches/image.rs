@@ -60,7 +60,7 @@ fn picture() -> Raster<Colour> {
 /// Writes the picture to the place where the comparison looks for it.
 fn write(picture: &Raster<Colour>) {
     let bytes = picture.data().iter().flatten().map(|v| (255.0 * v).round() as u8).collect();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/bench");
     let written = std::fs::create_dir_all(&folder).is_ok()
         && image::RgbImage::from_vec(WIDTH as u32, HEIGHT as u32, bytes)
             .is_some_and(|picture| picture.save(folder.join("image.png")).is_ok());

@@ -23,6 +23,13 @@ pub enum DecodeError {
     },
 }
 
+impl DecodeError {
+    /// A form of TIFF that is not read.
+    pub(crate) fn tiff(found: &str, expected: &str) -> Self {
+        Self::Unreadable(of_tiff(found, expected))
+    }
+}
+
 impl From<io::Error> for DecodeError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
@@ -41,15 +48,24 @@ impl From<ImageError> for DecodeError {
 /// The message for a form of TIFF that is not read: what was found, and what to do. `None` for any other error.
 fn unsupported_tiff(error: &ImageError) -> Option<String> {
     let ImageError::Unsupported(unsupported) = error else { return None };
-    let UnsupportedErrorKind::GenericFeature(feature) = unsupported.kind() else { return None };
+    const FORMS: &str = "8 or 16 bits or floats, in grey, colour or CMYK";
     let is_tiff = unsupported.format_hint() == ImageFormatHint::Exact(ImageFormat::Tiff);
-    let compression = feature.strip_prefix("compression method ").and_then(|rest| rest.split(' ').next());
-    let (found, expected) = match compression {
-        Some(name) => (format!("the compression {name}"), "none, LZW, Deflate or PackBits"),
-        None if feature.contains("RGBPalette") => ("a palette".to_owned(), "grey, colour or CMYK"),
-        None => return None,
+    let (found, expected) = match unsupported.kind() {
+        UnsupportedErrorKind::Color(colour) => (format!("{} bits a pixel", colour.bits_per_pixel()), FORMS),
+        UnsupportedErrorKind::GenericFeature(feature) => {
+            match feature.strip_prefix("compression method ").and_then(|rest| rest.split(' ').next()) {
+                Some(name) => (format!("the compression {name}"), "none, LZW, Deflate or PackBits"),
+                None if feature.contains("RGBPalette") => ("a palette".to_owned(), FORMS),
+                None => (feature.clone(), FORMS),
+            }
+        }
+        _ => return None,
     };
-    is_tiff.then(|| format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG"))
+    is_tiff.then(|| of_tiff(&found, expected))
+}
+
+fn of_tiff(found: &str, expected: &str) -> String {
+    format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG")
 }
 
 #[cfg(test)]
@@ -94,7 +110,7 @@ mod tests {
         let said = |found: &str, expected: &str| {
             Err(format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG"))
         };
-        assert_eq!(told(3, 1), said("a palette", "grey, colour or CMYK"));
+        assert_eq!(told(3, 1), said("a palette", "8 or 16 bits or floats, in grey, colour or CMYK"));
         assert_eq!(told(1, 50000), said("the compression ZSTD", "none, LZW, Deflate or PackBits"));
     }
 }

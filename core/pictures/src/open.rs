@@ -77,7 +77,7 @@ fn big_tiff(reader: Reader) -> Result<Reader, DecodeError> {
 ///
 /// # Errors
 ///
-/// A header that cannot be read, and OpenEXR channels of which none is a picture.
+/// A header that cannot be read, OpenEXR channels of which none is a picture, and TIFF files of whole numbers of 32 bits.
 pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeError> {
     let (format, mut file) = match reader.format() {
         Some(format @ (ImageFormat::Tiff | ImageFormat::OpenExr)) => (format, reader.into_inner()),
@@ -85,6 +85,12 @@ pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeEr
     };
     let is_exr = format == ImageFormat::OpenExr;
     let multiplied = is_exr || tags::multiplied(&mut file);
+    if !is_exr {
+        file.rewind()?;
+        if tags::wide_whole_numbers(&mut file) {
+            return Err(DecodeError::tiff("whole numbers of 32 bits", "8 or 16 bits, or floats"));
+        }
+    }
     let layered = is_exr && !tiles::headers(&mut file)?.iter().any(layered::is_plain);
     file.rewind()?;
     if layered {

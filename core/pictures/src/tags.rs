@@ -1,8 +1,10 @@
-//! Whether the colours of a TIFF file are multiplied by alpha.
+//! What the tags of a TIFF file say of its pixels: whether its colours are multiplied by alpha, and of what kind its numbers are.
 //!
 //! The tag `ExtraSamples` says it: 1 is alpha that the colours are multiplied by, 2 is alpha that they are not. Programs that composite write 1, as
 //! OpenImageIO does without being asked; painting programs write 2. With any other value the fourth channel
 //! is not alpha, and the decoder leaves it out.
+//!
+//! The decoder takes all numbers of 32 bits for floats, whatever `SampleFormat` says.
 
 use std::io::{Read, Seek};
 use tiff::decoder::Decoder;
@@ -10,11 +12,23 @@ use tiff::tags::Tag;
 
 /// The value of `ExtraSamples` for colours that are multiplied by alpha.
 const ASSOCIATED: u16 = 1;
+/// The value of `SampleFormat` for floats.
+const FLOATS: u16 = 3;
 
 /// Whether a file says that its colours are multiplied by alpha. A file that cannot be read does not: its decoder tells why.
 pub fn multiplied(file: &mut (impl Read + Seek)) -> bool {
     let samples = Decoder::new(file).and_then(|mut file| file.find_tag_unsigned_vec::<u16>(Tag::ExtraSamples));
     samples.ok().flatten().is_some_and(|samples| samples.first() == Some(&ASSOCIATED))
+}
+
+/// Whether a file has whole numbers of 32 bits, which the decoder would read as floats. A file that cannot be read has not: its
+/// decoder tells why.
+pub fn wide_whole_numbers(file: &mut (impl Read + Seek)) -> bool {
+    let Ok(mut file) = Decoder::new(file) else { return false };
+    let mut values = |tag| file.find_tag_unsigned_vec::<u16>(tag).ok().flatten().unwrap_or_default();
+    let (bits, kinds) = (values(Tag::BitsPerSample), values(Tag::SampleFormat));
+    // Without the tag, numbers are whole.
+    bits.contains(&32) && !kinds.contains(&FLOATS)
 }
 
 #[cfg(test)]
@@ -23,7 +37,7 @@ mod tests {
     use rototoon_image::colour::decode as to_light;
     use std::fs::File;
     use std::path::Path;
-    use tiff::encoder::colortype::{ColorType, RGB8, RGBA8, RGBA16, RGBA32Float};
+    use tiff::encoder::colortype::{ColorType, RGB8, RGBA8, RGBA16, RGBA32, RGBA32Float};
     use tiff::encoder::{TiffEncoder, TiffValue};
     use tiff::tags::Tag;
 
@@ -67,6 +81,15 @@ mod tests {
         // Colours that are brighter than their alpha allows.
         write::<RGBA8>(&path, [255, 0, 0, 51], 1);
         assert_eq!(decode_layer(&path, None).unwrap().get(0, 0), [0.2, 0.0, 0.0, 0.2]);
+    }
+
+    #[test]
+    fn whole_numbers_of_32_bits_are_no_floats() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tif");
+        write::<RGBA32>(&path, [u32::MAX / 2; 4], 2);
+        let said = decode(&path, None).unwrap_err().to_string();
+        assert!(said.contains("whole numbers of 32 bits"), "{said}");
     }
 
     #[test]

@@ -116,7 +116,7 @@ fn compared(
     let plates = [Plate { footage: old, frames: &frames[0] }, Plate { footage, frames: &frames[1] }];
     compare(plates[0], plates[1], &new.given, progress).map_err(|error| match error {
         ConformError::Cancelled(cancelled) => cancelled.into(),
-        ConformError::Frame { source, .. } => source.into(),
+        error @ ConformError::Frame { .. } => PipelineError::Conform(error),
         other => PipelineError::Request(other.to_string()),
     })
 }

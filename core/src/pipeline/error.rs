@@ -1,5 +1,6 @@
 //! Why the pipeline stopped.
 
+use crate::conform::ConformError;
 use crate::fit::FitError;
 use crate::import::ImportError;
 use crate::memory::TooMuch;
@@ -24,6 +25,9 @@ pub enum PipelineError {
     /// A frame could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// Footages could not be compared.
+    #[error(transparent)]
+    Conform(ConformError),
     /// Frames have no picture.
     #[error("{}", super::gaps::told(gaps, *drawn))]
     Gaps {
