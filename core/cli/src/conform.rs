@@ -3,7 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
-use rototoon::conform::{ConformError, Given};
+use rototoon::conform::Given;
 use rototoon::geometry::Point;
 use rototoon::pipeline::{self, Conformed, NewFootage, PipelineError};
 use rototoon::project::output::check_writable;
@@ -112,11 +112,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 /// An error, and for frames that cannot be read the way without them.
 fn explained(error: PipelineError, from: &Path) -> Failure {
     match error {
-        PipelineError::Gaps { .. } | PipelineError::Conform(ConformError::Frame { which: "old", .. }) => {
-            Failure::Other(format!(
-                "{error}\nif the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones"
-            ))
-        }
+        PipelineError::Footage { which: "old", .. } => Failure::Other(format!(
+            "{error}\nif the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones"
+        )),
         other => Failure::of(other, from),
     }
 }

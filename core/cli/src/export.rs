@@ -6,8 +6,11 @@ use clap::{Arg, ArgMatches, Command};
 use rototoon::export::{Detail, Motion, SvgOptions, svg};
 use rototoon::import::too_large;
 use rototoon::pipeline::{self, Excerpt};
-use rototoon::project::write_whole;
+use rototoon::project::output::check_writable;
+use rototoon::project::{Document, Inputs, write_whole};
 use rototoon::scene::parameters::Stage;
+use rototoon::scene::{FrameNumber, FramePattern};
+use std::path::Path;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -16,7 +19,7 @@ pub fn command() -> Command {
         .arg(arguments::project())
         .arg(arguments::output(
             "FILE",
-            "FILE.svg, FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette), FILE.setting (Fusion) or FILE.json",
+            "FILE.svg, FILE_%04d.svg (a file for each frame), FILE.nk (Nuke RotoPaint), FILE.ntp (project of Natron), FILE.py (script for Natron), FILE.jsx (script for After Effects), FILE.fxs (Silhouette), FILE.setting (Fusion) or FILE.json",
         ))
         .args(arguments::of_stage(Stage::Export))
         .arg(
@@ -29,7 +32,7 @@ pub fn command() -> Command {
         )
         .arg(arguments::frames())
         .arg(arguments::frame_offset(
-            "What is added to the numbers of the frames: with 1000, frame 1 becomes 1001. Not for .svg and .jsx, which count from their own beginning",
+            "What is added to the numbers of the frames: with 1000, frame 1 becomes 1001. Not for an animated .svg and for .jsx, which count from their own beginning",
         ))
         .arg(arguments::parts("Writes only the part of this name; may be given several times"))
 }
@@ -44,8 +47,15 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
             to.display()
         )));
     }
+    let numbered = pattern(to);
+    if numbered.is_some() && extension != "svg" {
+        return Err(Failure::Use(format!(
+            "{}: found a frame number, expected a plain name: a .{extension} file holds all frames",
+            to.display()
+        )));
+    }
     let unused: &[&str] = match extension.as_str() {
-        "svg" => &[],
+        "svg" if numbered.is_none() => &[],
         "json" => &["motion", "spacing"],
         _ => &["motion"],
     };
@@ -56,7 +66,7 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
         )));
     }
     let offset = arguments::offset(given);
-    if offset != 0 && ["svg", "jsx"].contains(&extension.as_str()) {
+    if offset != 0 && numbered.is_none() && ["svg", "jsx"].contains(&extension.as_str()) {
         return Err(Failure::Use(format!(
             "found --frame-offset {offset}: expected no such option for a .{extension} file, which counts from its own beginning"
         )));
@@ -67,6 +77,11 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
         ));
     }
     Ok(extension)
+}
+
+/// The pattern of files for each frame; `None` where all frames go into one file.
+fn pattern(to: &Path) -> Option<FramePattern> {
+    FramePattern::parse(to.to_str()?).ok()
 }
 
 /// How far Bézier curves may be from snapped paths; `None` for points with straight sides.
@@ -94,8 +109,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         inputs.check(to)?;
         return project::save(document, from, to);
     }
-    inputs.file(from).check(to)?;
-    let asked = excerpt(given);
+    let (inputs, asked) = (inputs.file(from), excerpt(given));
+    if let Some(pattern) = pattern(to) {
+        return numbered(given, &document, &pattern, &inputs);
+    }
+    inputs.check(to)?;
     let whole = document.scene.footage.clone();
     let mut document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
@@ -118,15 +136,49 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         "jsx" => pipeline::export_after_effects(&document, detail),
         "fxs" => pipeline::export_silhouette(&document, detail),
         "setting" => pipeline::export_fusion(&document, detail),
-        // Regions and strokes belong to no part.
-        _ if asked.parts.is_some() => svg(&document.scene, &SvgOptions { motion, spacing, bezier }),
-        _ => pipeline::export_svg(&document, &SvgOptions { motion, spacing, bezier })
-            .map_err(|error| Failure::of(error, from))?,
+        _ => drawn(given, &document, &SvgOptions { motion, spacing, bezier })?,
     };
     write_whole(to, text.as_bytes())?;
     let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
     let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
     let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
+    warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
+    Ok(())
+}
+
+/// SVG of a document. Regions and strokes belong to no part.
+fn drawn(given: &ArgMatches, document: &Document, options: &SvgOptions) -> Result<String, Failure> {
+    if arguments::names(given).is_some() {
+        return Ok(svg(&document.scene, options));
+    }
+    pipeline::export_svg(document, options).map_err(|error| Failure::of(error, arguments::path(given, "project")))
+}
+
+/// Writes an SVG file for each frame, for programs that play no animations.
+fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern, inputs: &Inputs) -> Result<(), Failure> {
+    let (from, to, asked) = (arguments::path(given, "project"), arguments::path(given, "output"), excerpt(given));
+    let of = |asked: &Excerpt| pipeline::excerpt(document, asked).map_err(|error| Failure::of(error, from));
+    // Both say which numbers the files have, and whether there is anything to write.
+    let named = of(&asked)?.scene.footage;
+    let complete = of(&Excerpt { offset: 0, ..asked.clone() })?;
+    if let Some(nothing) = pipeline::nothing_for(&complete, "svg") {
+        return Err(Failure::Other(format!("{}: {nothing}", from.display())));
+    }
+    (named.first..=named.last).try_for_each(|number| inputs.check(&pattern.path(number)))?;
+    check_writable(&pattern.path(named.first))?;
+    let options =
+        SvgOptions { motion: Motion::Hold, spacing: arguments::number(given, "spacing"), bezier: bezier(given) };
+    let written = |frame: FrameNumber| -> Result<(), Failure> {
+        let one = of(&Excerpt { frames: Some(frame..=frame), offset: 0, parts: asked.parts.clone() })?;
+        let number = frame - complete.scene.footage.first + named.first;
+        Ok(write_whole(&pattern.path(number), drawn(given, &one, &options)?.as_bytes())?)
+    };
+    (complete.scene.footage.first..=complete.scene.footage.last).try_for_each(written)?;
+    let warnings = [
+        pipeline::left_out_of_shapes(&complete, "svg"),
+        pipeline::untracked(&complete.scene),
+        pipeline::outdated(&complete.scene),
+    ];
     warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
     Ok(())
 }

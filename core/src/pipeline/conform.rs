@@ -105,20 +105,25 @@ fn compared(
     new: &NewFootage,
     progress: &dyn Progress,
 ) -> Result<Conform, PipelineError> {
-    let (old, sequences) = (&document.scene.footage, [(&document.scene.footage, folder), (footage, &new.folder)]);
+    let (old, sequences) =
+        (&document.scene.footage, [("old", &document.scene.footage, folder), ("new", footage, &new.folder)]);
     let mut frames = Vec::new();
-    for (footage, folder) in sequences {
+    for (which, footage, folder) in sequences {
         memory::to_follow(footage)?;
         let sequence = Sequence::keeping(footage, folder, 0)?;
-        gaps::none(&sequence, footage.first..=footage.last)?;
+        gaps::none(&sequence, footage.first..=footage.last).map_err(|error| of_footage(which, error))?;
         frames.push(sequence);
     }
     let plates = [Plate { footage: old, frames: &frames[0] }, Plate { footage, frames: &frames[1] }];
     compare(plates[0], plates[1], &new.given, progress).map_err(|error| match error {
         ConformError::Cancelled(cancelled) => cancelled.into(),
-        error @ ConformError::Frame { .. } => PipelineError::Conform(error),
+        ConformError::Frame { which, source } => of_footage(which, source.into()),
         other => PipelineError::Request(other.to_string()),
     })
+}
+
+fn of_footage(which: &'static str, error: PipelineError) -> PipelineError {
+    PipelineError::Footage { which, source: Box::new(error) }
 }
 
 impl Conformed {

@@ -1,6 +1,5 @@
 //! Why the pipeline stopped.
 
-use crate::conform::ConformError;
 use crate::fit::FitError;
 use crate::import::ImportError;
 use crate::memory::TooMuch;
@@ -25,9 +24,14 @@ pub enum PipelineError {
     /// A frame could not be read.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// Footages could not be compared.
-    #[error(transparent)]
-    Conform(ConformError),
+    /// Frames of one of two footages could not be read.
+    #[error("{which} footage: {source}")]
+    Footage {
+        /// `old` or `new`.
+        which: &'static str,
+        /// The frames and why.
+        source: Box<PipelineError>,
+    },
     /// Frames have no picture.
     #[error("{}", super::gaps::told(gaps, *drawn))]
     Gaps {

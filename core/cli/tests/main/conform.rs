@@ -61,10 +61,12 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
     draw(&other, 3, 40, 30);
     let said = refused(&pattern, &[], 1);
     assert!(said.contains("but the footage is 40x30"), "{said}");
-    fs::write(&other, "no picture").unwrap();
-    let said = refused(&pattern, &[], 1);
-    assert!(said.contains("new footage: frame 101: cannot read") && !said.contains("--frame-offset"), "{said}");
     draw(&other, 3, 64, 48);
+    let later = cartoon.path("again/new_0103.png");
+    fs::write(&later, "no picture").unwrap();
+    let said = refused(&pattern, &[], 1);
+    assert!(said.contains("new footage: frame 103: cannot read") && !said.contains("--frame-offset"), "{said}");
+    draw(&later, 3, 64, 48);
     fs::write(cartoon.frame(3), "no picture").unwrap();
     let said = refused(&pattern, &[], 1);
     assert!(said.contains("old footage: frame 3: cannot read") && said.contains("--frame-offset"), "{said}");

@@ -140,6 +140,27 @@ fn svg_shapes_are_the_same_after_export_and_import() {
 }
 
 #[test]
+fn svg_of_a_pattern_is_a_file_for_each_frame() {
+    let folder = Folder::new();
+    let captured = folder.captured();
+    let pattern = folder.path("f_%04d.svg");
+    run(&["export", text(&captured), "-o", text(&pattern), "--frames", "3-6", "--frame-offset", "1000"], 0);
+    let (empty, out) = (folder.document("empty.json", json!([])), folder.path("o.json"));
+    for frame in 3..=6 {
+        let file = folder.path(&format!("f_{:04}.svg", frame + 1000));
+        assert!(!fs::read_to_string(&file).unwrap().contains("<animate"), "a picture stands still");
+        run(&["import", text(&empty), text(&file), "-o", text(&out), "--frame", &frame.to_string()], 0);
+        let found = parts(&out);
+        let keys = found.iter().find(|part| part.0 == "triangle").unwrap();
+        same(&keys.2, &[(frame, triangle()[&frame].clone())].into(), 0.005 + 1e-9);
+    }
+    let files = fs::read_dir(folder.path("")).unwrap().filter_map(|file| file.unwrap().file_name().into_string().ok());
+    assert_eq!(files.filter(|name| name.ends_with(".svg")).count(), 4);
+    let said = run(&["export", text(&captured), "-o", text(&folder.path("f_%04d.nk"))], 2);
+    assert!(said.contains("a .nk file holds all frames"), "{said}");
+}
+
+#[test]
 fn a_shape_replaces_the_part_of_its_name() {
     let folder = Folder::new();
     let (shapes, captured) = (folder.path("a.svg"), folder.captured());

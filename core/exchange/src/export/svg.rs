@@ -275,9 +275,12 @@ fn nearest<'a>(shapes: &'a [Option<String>], first: &'a str) -> Vec<&'a str> {
         .collect()
 }
 
-/// Writes one animation. Held values are written only where they change.
+/// Writes one animation. Held values are written only where they change; a single frame is a picture that stands still.
 fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, values: &[&str]) {
     let n = values.len();
+    if n == 1 {
+        return;
+    }
     let mut kept: Vec<(usize, &str)> = values.iter().copied().enumerate().collect();
     match motion {
         Motion::Hold => kept.dedup_by_key(|(_, value)| *value),
