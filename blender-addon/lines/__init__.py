@@ -5,6 +5,7 @@ the artist's and are never written; their strokes are followed.
 
 ====================  ==============================================================================
 `records`             checksums of traced drawings: they show what the artist has changed since
+`moved`               the same records, of drawings that were moved in time
 `older_files`         marks for the generated drawings of files of older versions
 `drawings`            the drawings of a layer: the artist's, and traced ones
 `numbers`             numbers of strokes, from the library's to those of the layers

@@ -16,7 +16,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import marks
 from ..blender import strokes as st
-from . import records
+from . import moved, records
 
 
 @dataclass
@@ -85,12 +85,15 @@ def _layer(name: str, layer, record: records.Layer, wanted: set[int] | None, slo
     def asked(content: st.Content, frame: int) -> st.Content:
         return content if wanted is None or frame in wanted else EMPTY
 
-    for frame, (handle, kind) in gp.drawings(layer).items():
+    drawings = gp.drawings(layer)
+    sums = moved.sums_of({frame: handle for frame, (handle, _) in drawings.items()})
+    record = moved.followed(record, sums)
+    for frame, (handle, kind) in drawings.items():
         strokes = len(gp.offsets(handle)) - 1
         tracks = gp.value(handle, gp.TRACK, strokes)
         found.highest[frame] = int(tracks.max(initial=0))
         content = st.read(handle)
-        if kind == gp.GENERATED and _is_traced(content, frame, record, slots):
+        if kind == gp.GENERATED and _is_traced(content, sums[frame], frame, record, slots):
             found.made[frame] = asked(content, frame)
             if strokes and (content.point.get(gp.CONFIDENCE, np.ones(0)) >= 1).all():
                 found.sure.add(frame)
@@ -106,15 +109,15 @@ def _layer(name: str, layer, record: records.Layer, wanted: set[int] | None, slo
     return found
 
 
-def _is_traced(content: st.Content, frame: int, record: records.Layer, slots: marks.Slots) -> bool:
-    """Whether a generated drawing is as tracing wrote it. Without a checksum, as on a renamed layer, the marks of the strokes tell."""
+def _is_traced(content: st.Content, total: int, frame: int, record: records.Layer, slots: marks.Slots) -> bool:
+    """Whether a generated drawing with the checksum `total` is as tracing wrote it. Without a checksum, as on a renamed layer, the marks of the strokes tell."""
     known = record.sums.get(frame)
     if known is None:
         made = content.strokes(gp.MADE) & ~content.strokes(gp.TWEENED)
         traced = content.point.get(gp.TRACKED)
         if not (len(made) and made.all() and traced is not None and np.array_equal(traced, content.point["position"])):
             return False
-    elif known != sum_of(content):
+    elif known != total:
         return False
     # An older version may have traced it anew: then the mark is of an earlier drawing, and the record says so.
     return not ((known is None or frame in record.marked) and marks.untouched(content, slots) is False)

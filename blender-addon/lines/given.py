@@ -22,7 +22,7 @@ from ..tween import moved_keys, pairs, tweening
 from ..tween import records as tween_records
 from ..tween.charts import Choices
 from . import drawings as dr
-from . import looks, records, tracing
+from . import looks, moved, records, tracing
 
 Strokes = Mapping[int, list[tracing.Placed]]
 """By scene frame, from back to front."""
@@ -78,7 +78,7 @@ def draw(ob, name: str, film: Film) -> Done:
     traced = {frame: strokes for frame, strokes in sorted(film.traced.items()) if frame not in own | film.keys.keys()}
     done = Done(keys=len(keys), stayed=own & film.keys.keys())
     mapper = Mapper(ob, {*keys, *traced, *film.between}, {}, [name])
-    kept = records.read(ob.data)
+    kept = moved.read(ob, [name])
     record = kept.setdefault(name, records.Layer())
     _write_keys(ob, target, mapper, keys, film.followed, record)
     written = tracing.Done()

@@ -19,7 +19,7 @@ from ..blender import strokes as st
 from ..common.wording import counted
 from ..tween import keys as ks
 from ..tween import pairing
-from . import records
+from . import moved, records
 
 
 @dataclass
@@ -140,7 +140,7 @@ class LinePairing(pairing.Pairing):
     def store(self) -> None:
         """Writes the numbers of the later drawings and of all drawings after them."""
         guard.need_open(gp.find_layer(self._ob, layer.name) for layer in self._layers if layer.swaps)
-        kept = records.read(self._ob.data)
+        kept = moved.read(self._ob, [layer.name for layer in self._layers if layer.swaps])
         for layer in self._layers:
             if layer.swaps:
                 self._store(layer, kept.get(layer.name, records.Layer()))

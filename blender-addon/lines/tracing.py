@@ -20,7 +20,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from . import drawings as dr
-from . import looks, numbers, records
+from . import looks, moved, numbers, records
 from . import plan as pl
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -140,7 +140,7 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
         # What was traced is edited next, and carried from the active layer.
         gp.activate(ob, gp.layer(ob, home))
     yield 0.0
-    done, kept = Done(), records.read(ob.data)
+    done, kept = Done(), moved.read(ob, names)
     counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})
     for g, (group, traced) in enumerate(zip(plan.groups, found, strict=True)):
         if plan.new:

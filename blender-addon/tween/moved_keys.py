@@ -18,7 +18,7 @@ redrawn.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
 from itertools import pairwise
@@ -95,13 +95,13 @@ def _places(record: records.Layer, now: dict[int, int], keys: list[int]) -> dict
     standing: dict[int, int] = {frame: frame for frame in stand}
     for low, high in pairwise([-math.inf, *stand, math.inf]):
         old, new = ([frame for frame in frames if low < frame < high] for frames in (before, keys))
-        standing |= _in_order(old, noted, new, now)
-    moving = _in_order(before, noted, keys, now)
+        standing |= in_order(old, noted, new, now)
+    moving = in_order(before, noted, keys, now)
     return moving if len(moving) > len(standing) else standing
 
 
-def _in_order(before: list[int], noted: dict[int, int], keys: list[int], now: dict[int, int]) -> dict[int, int]:
-    """Which recorded key is which key, by their order alone."""
+def in_order(before: list[int], noted: Mapping[int, Hashable], keys: list[int], now: Mapping[int, int]) -> dict[int, int]:
+    """Which recorded drawing is which drawing, by their order alone. `noted` and `now` are checksums by frame."""
     found: dict[int, int] = {}
     match = SequenceMatcher(None, [noted[frame] for frame in before], [now[frame] for frame in keys], autojunk=False)
     for kind, a, b, c, d in match.get_opcodes():

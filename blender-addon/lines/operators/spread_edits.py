@@ -11,7 +11,7 @@ from ...common import jobs
 from ...common.operators import Long
 from ...common.wording import counted
 from .. import drawings as dr
-from .. import records, spreading
+from .. import moved, records, spreading
 from .match_lines import nothing_traced, numbered
 from .tracing_base import OnFootage
 
@@ -43,8 +43,9 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         wanted = numbered(self._ob)
         guard.need_some(wanted)
         self.warn(guard.left_out(wanted))
-        kept, self._work_on = records.read(self._ob.data), []
-        for layer in guard.open_layers(wanted):
+        layers, self._work_on = guard.open_layers(wanted), []
+        kept = moved.read(self._ob, [layer.name for layer in layers])
+        for layer in layers:
             shown = st.shown_frame(layer, self._frame)
             if shown is not None:
                 self._work_on.append(self._read(layer, shown, kept.get(layer.name, records.Layer())))
@@ -94,7 +95,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
 
     def finish(self, _context, _work):
         guard.need_open(gp.find_layer(self._ob, name) for name, *_ in self._work_on)
-        kept = records.read(self._ob.data)
+        kept = moved.read(self._ob, {name for name, *_ in self._done})
         for name in {name: None for name, *_ in self._done}:
             gp.make_own(gp.find_layer(self._ob, name), [frame for of, frame, _ in self._done if of == name])
         for count, (name, frame, content) in enumerate(self._done, 1):
