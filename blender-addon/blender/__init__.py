@@ -12,6 +12,7 @@
 `armatures`, `actions`, `masks`       bones, animation curves, masks
 `frames`, `windows`, `preferences`    the current frame, the windows, the settings
 `animated`                            animation curves, and values that are not keyed yet
+`holds`                               frames that hold the generated drawing before them
 `memo`                                answers that panels need not ask for at each redraw
 `errors`                              the error that the artist sees
 ====================================  ==============================================================

@@ -15,11 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from ..blender import colours, placement
+from ..blender import colours, holds, placement
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..lines import doubts
 from ..lines import drawings as dr
+from ..lines import plan
 from ..tween import breakdowns, moved_keys
 from ..tween import keys as tween_keys
 from ..tween import pairs as tween_pairs
@@ -118,6 +119,8 @@ class OfLayer:
             strokes = stroke_fields.written(ob, content, mapper.at(0, frame), palette)
             self._sheets[frame] = _Sheet(content, strokes, self._numbers(frame, content, strokes))
         self._further = Further(ob)
+        low, high = plan.film(ob)
+        self._held = {frame for frame in holds.read(ob.data, self._drawn.name) if low <= frame <= high}
 
     def _adopt(self, layer) -> None:
         """Counts in-betweens that the artist has changed as the artist's drawings."""
@@ -154,7 +157,8 @@ class OfLayer:
             "matches": self._matches(),
         }
         drawn = self._drawn
-        return Written({k: v for k, v in fields.items() if v}, len(self._keys), len(drawn.made), len(drawn.other), self.lost)
+        traced = len(self._shown_as_traced.keys() - set(self._keys))
+        return Written({k: v for k, v in fields.items() if v}, len(self._keys), traced, len(drawn.other), self.lost)
 
     # -- by frame ----------------------------------------------------------------------------------------------------
 
@@ -233,8 +237,17 @@ class OfLayer:
         return found
 
     def _traced(self) -> list[dict[str, Any]]:
-        wanted = [frame for frame in self._sheets if frame in self._drawn.made or frame in self._keys and self._sheets[frame].carried]
-        return [{"frame": frame - self._offset, "strokes": self._numbered(frame)} for frame in wanted]
+        return [{"frame": frame - self._offset, "strokes": self._numbered(shown)} for frame, shown in sorted(self._shown_as_traced.items())]
+
+    @cached_property
+    def _shown_as_traced(self) -> dict[int, int]:
+        """By frame the drawing that it shows, where that is a traced one, or one of the artist that was followed."""
+        found = {frame: frame for frame in self._sheets if frame in self._drawn.made or frame in self._keys and self._sheets[frame].carried}
+        for frame in self._held - self._sheets.keys():
+            before = max((each for each in self._sheets if each < frame), default=None)
+            if before in found:
+                found[frame] = before
+        return found
 
     def _numbered(self, frame: int) -> list[dict[str, Any]]:
         sheet, found = self._sheets[frame], []

@@ -13,11 +13,12 @@ import numpy as np
 from rototoon import RototoonError, Session
 from rototoon.fills import Click
 
-from ..blender import colours
+from ..blender import colours, holds
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common import polygons
 from ..lines import doubts
+from ..lines import plan as lines_plan
 from ..paint import clicks as paint_clicks
 from ..paint import filling, given, painted, sheets
 from ..paint import plan as pl
@@ -63,7 +64,8 @@ def of(ob) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     drawn = sheets.read(ob, name)
     mapper = pl.mapper_of(ob, name, drawn, drawn)
     used = max((int(sheet.content.strokes(gp.TRACK).max(initial=0)) for sheet in drawn.values()), default=0)
-    fills, filled, fresh = [], [], itertools.count(used + 1)
+    shown: dict[int, list[dict[str, Any]]] = {}
+    fills, fresh = [], itertools.count(used + 1)
     for frame, sheet in sorted(drawn.items()):
         mapping = mapper.at(0, frame)
         asked = paint_clicks.of(ob, sheet, mapping, ob.rototoon.height)
@@ -72,8 +74,13 @@ def of(ob) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
             fills.append({"frame": frame - offset, "regions": regions})
         regions = _regions(ob, sheet, mapping, fresh)
         if regions or not len(sheet.own):
-            filled.append({"frame": frame - offset, "regions": regions})
-    return fills, filled
+            shown[frame] = regions
+    low, high = lines_plan.film(ob)
+    for frame in holds.read(ob.data, name) - drawn.keys():
+        before = max((each for each in drawn if each < frame), default=None)
+        if low <= frame <= high and before in shown:
+            shown[frame] = shown[before]
+    return fills, [{"frame": frame - offset, "regions": regions} for frame, regions in sorted(shown.items())]
 
 
 def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dict[str, Any]]:

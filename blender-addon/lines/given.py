@@ -8,7 +8,7 @@ document draws: on its frames, and between two of its drawings that come in. The
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -78,18 +78,40 @@ def draw(ob, name: str, film: Film) -> Done:
     traced = {frame: strokes for frame, strokes in sorted(film.traced.items()) if frame not in own | film.keys.keys()}
     done = Done(keys=len(keys), stayed=own & film.keys.keys())
     mapper = Mapper(ob, {*keys, *traced, *film.between}, {}, [name])
+    known = _known(ob, traced)
+    if mapper.still:
+        traced = dict(traced) | dict.fromkeys(_held(keys, traced))
     kept = moved.read(ob, [name])
     record = kept.setdefault(name, records.Layer())
     _write_keys(ob, target, mapper, keys, film.followed, record)
     written = tracing.Done()
     (layer,) = dr.read(ob, [name])
-    known = _known(ob, traced)
     jobs.drained(tracing.write(ob, layer, mapper, 0, traced, looks.Looks(), record, written, known))
     records.write(ob.data, kept)
     done.strokes = len(written.numbers)
     done.pairs = _pair(target, keys.keys(), film)
     _draw_between(ob, target, mapper, film, keys.keys(), done)
     return done
+
+
+def _held(keys: Strokes, traced: Strokes) -> list[int]:
+    """The traced drawings that equal the one on the frame before in all that a document says of them: the library found that the pictures show the
+    same drawing."""
+    shown = {**traced, **keys}
+    return [frame for frame, strokes in traced.items() if frame - 1 in shown and _same(shown[frame - 1], strokes)]
+
+
+def _same(one: list[tracing.Placed], other: list[tracing.Placed]) -> bool:
+    # The further fields of a drawing of the artist are not those of a traced one.
+    names = [each.name for each in fields(tracing.Placed) if each.name != "fields"]
+    values = ((getattr(a, name), getattr(b, name)) for a, b in zip(one, other) for name in names)
+    return len(one) == len(other) and all(_equal(a, b) for a, b in values)
+
+
+def _equal(one, other) -> bool:
+    if one is None or other is None:
+        return one is other
+    return np.array_equal(one, other, equal_nan=True)
 
 
 def _cleared(ob, name: str, target, film: Film) -> set[int]:

@@ -15,7 +15,7 @@ from rototoon import Session
 from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, marks, own_attributes
+from ..blender import guard, holds, marks, own_attributes
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
@@ -296,6 +296,7 @@ def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, recor
             done.confidence.setdefault((layer.name, stroke.number), {})[frame] = stroke.confidence
         yield count / len(placed)
     marks.note(ob.data, layer.name, placed)
+    holds.note(ob.data, layer.name, held, placed)
     record.marked |= placed.keys()
     done.breaks |= _breaks(placed)
     for frame in [frame for frame in record.sums if frame in layer.kept or frame not in handles]:

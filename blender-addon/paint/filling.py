@@ -14,7 +14,7 @@ from rototoon import Session
 from rototoon.fills import Filled
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import guard, holds
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs, polygons
@@ -159,14 +159,19 @@ def repeats(found: Filled) -> set[int]:
 
 def _hold(layer, plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn, repeated: set[int]) -> None:
     """Takes frames out that hold the drawing before them, since the picture or the drawing in it is the same."""
-    if not plan.mapper.still:
-        return
-    own = {frame for frame, sheet in drawn.items() if len(sheet.own)}
-    held = plan.held | {number + plan.offset for number in repeated}
-    held = {frame for frame in held & wanted.keys() if frame not in own}
+    held: set[int] = set()
+    if plan.mapper.still:
+        held = _held(plan, wanted, drawn, repeated)
     gp.remove_frames(layer, sorted(held & drawn.keys()))
     for frame in held:
         del wanted[frame]
+    holds.note(layer.id_data, layer.name, held, wanted)
+
+
+def _held(plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn, repeated: set[int]) -> set[int]:
+    own = {frame for frame, sheet in drawn.items() if len(sheet.own)}
+    held = plan.held | {number + plan.offset for number in repeated}
+    return {frame for frame in held & wanted.keys() if frame not in own}
 
 
 def _kind(sheet: sheets.Sheet | None) -> str:

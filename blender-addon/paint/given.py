@@ -12,7 +12,7 @@ import numpy as np
 from rototoon.fills import Click
 
 from ..blender import grease_pencil as gp
-from ..blender import guard
+from ..blender import guard, holds
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from ..common import polygons
@@ -36,6 +36,8 @@ def draw(ob, clicks: Mapping[int, Sequence[Click]], regions: Mapping[int, list[p
     gp.remove_frames(layer, sorted(drawn.keys() - kept))
     frames = sorted((clicks.keys() | regions.keys()) - kept)
     mapper, palette = Mapper(ob, frames, {}, [name]), painted.Palette()
+    held = [frame for frame in frames if mapper.still and _is_held(frame, frames, clicks, regions)]
+    frames = [frame for frame in frames if frame not in set(held)]
     gp.make_frames(layer, frames, gp.GENERATED)
     handles, own = gp.drawings(layer), {}
     for frame in frames:
@@ -46,8 +48,22 @@ def draw(ob, clicks: Mapping[int, Sequence[Click]], regions: Mapping[int, list[p
             own[frame] = gp.KEYFRAME
         _write(ob, handles[frame][0], mapper.at(0, frame), palette, rest, shown, asked)
     gp.set_keyframe_type(layer, own)
+    holds.note(ob.data, name, held, frames)
     ob.data.update_tag()
-    return len(frames)
+    return len(frames) + len(held)
+
+
+def _is_held(frame: int, frames: Sequence[int], clicks: Mapping, regions: Mapping[int, list[painted.Region]]) -> bool:
+    """Whether a frame has no click and the regions of the frame before, in all that a document says of them: the library found that the pictures
+    show the same drawing."""
+    if frame in clicks or frame - 1 not in frames or not {frame - 1, frame} <= regions.keys():
+        return False
+    one, other = ([_content(region) for region in regions[each]] for each in (frame - 1, frame))
+    return one == other
+
+
+def _content(region: painted.Region) -> tuple:
+    return region.number, region.confidence, tuple(region.colour), *(np.asarray(loop).tobytes() for loop in region.loops)
 
 
 def _clicked(click: Click, regions: list[painted.Region], height: int) -> painted.Region:

@@ -420,7 +420,7 @@ def test_strokes_with_a_line_and_a_fill_keep_both_colours(addon, film, tmp_path)
 def test_traced_strokes_of_a_document_keep_line_and_fill(addon, film, pictures, tmp_path):
     gp = addon("blender.grease_pencil")
     both = line(4, track=1, closed=True, colour=[0.2, 0, 0], fill_colour=[0, 0.6, 0])
-    ob = taken(tmp_path / "traced.json", pictures, traced=[{"frame": frame, "strokes": [line(0, track=0), both]} for frame in (1, 2)])
+    ob = taken(tmp_path / "traced.json", pictures, traced=[{"frame": frame, "strokes": [line(0, frame - 1, track=0), both]} for frame in (1, 2)])
     found = exported(tmp_path / "out.json")["traced"]
     for each in found:
         stroke = each["strokes"][1]

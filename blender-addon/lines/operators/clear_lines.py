@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, memo
+from ...blender import guard, holds, memo
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted, joined, stayed
 from .. import drawings as dr
@@ -37,6 +37,7 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
             removed += len(found.made)
             edited |= found.edited
             kept.pop(found.name, None)
+            holds.forget(ob.data, found.name)
         records.write(ob.data, kept)
         ob.data.update_tag()
         return joined(f"{counted(removed, 'traced drawing')} removed", stayed("traced drawing", edited))
