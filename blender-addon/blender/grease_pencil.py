@@ -74,6 +74,8 @@ BEFORE = "rototoon_before"
 SIDES = "rototoon_sides"
 """On which of its two keys a stroke of an in-between has a counterpart of its number: 1 for the earlier one, 2 for the later one, added; 0 for a
 stroke that was drawn since. A breakdown that was an in-between keeps it."""
+OFF_INK = "rototoon_off_ink"
+"""Whether a stroke of the artist lies for the most part off the lines of its picture, as where the picture was drawn anew."""
 
 TYPES = {
     KEY_POINT: ("INT", "CURVE"),
@@ -88,6 +90,7 @@ TYPES = {
     NEXT: ("INT", "CURVE"),
     BEFORE: ("INT", "CURVE"),
     SIDES: ("INT", "CURVE"),
+    OFF_INK: ("BOOLEAN", "CURVE"),
     "fill_opacity": ("FLOAT", "CURVE"),
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),

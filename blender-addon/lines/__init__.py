@@ -14,6 +14,7 @@ the artist's and are never written; their strokes are followed.
 `looks`               material, radius and opacity of strokes
 `tracing`             one run: reads, traces in a thread, writes
 `given`               drawings that a document gives, as a layer
+`off_ink`             drawings of the artist whose picture was drawn anew
 `doubts`              which traced strokes are in doubt, and where
 `spreading`           an edit of one drawing, done on all frames
 `pairing`             the same strokes of two neighbouring drawings, and clicks that change them

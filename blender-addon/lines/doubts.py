@@ -4,7 +4,8 @@ Tracing gives each carried stroke a confidence: the probability that it is the s
 `rototoon_confidence`, all points of a stroke the same. Whether a stroke is sure, doubtful or lost comes from the core's formula, which
 the command line and the tracks of contours use too.
 
-A drawing that the artist has changed is the artist's, and so beyond doubt.
+A drawing that the artist has changed is the artist's, and so beyond doubt: but where its picture was drawn anew, and its strokes lie on no line of
+it, they are doubtful (see `off_ink`).
 """
 
 from __future__ import annotations
@@ -38,6 +39,8 @@ class Place:
     """Its index in the drawing."""
     lost: bool
     """Whether it is probably another stroke."""
+    off: bool = False
+    """Whether it is a stroke of the artist that lies on no line of the picture."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,9 @@ def places(ob) -> list[Place]:
             tracks = content.strokes(gp.TRACK)
             verdict = verdicts(of_strokes(content.point.get(gp.CONFIDENCE), content.starts))
             found += [Place(frame, layer.name, int(tracks[i]), int(i), bool(verdict[i] == LOST)) for i in np.flatnonzero(verdict)]
+        for frame, content in layer.keys.items():
+            tracks = content.strokes(gp.TRACK)
+            found += [Place(frame, layer.name, int(tracks[i]), int(i), False, True) for i in np.flatnonzero(content.strokes(gp.OFF_INK))]
     return sorted(found)
 
 

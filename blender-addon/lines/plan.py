@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from rototoon.lines import Traced
 
 from ..blender import colours, footage, stroke_lines
 from ..blender import grease_pencil as gp
@@ -66,6 +67,8 @@ class Plan:
     """Whether a frame with the same picture as the one before holds its drawing."""
     held: set[int] = field(default_factory=set)
     """The scene frames of such pictures, once they are known."""
+    inks: dict[int, Traced] = field(default_factory=dict)
+    """By scene frame of a drawing of the artist the lines of its own picture, once they are known."""
     sums: dict[str, dict[int, int]] = field(default_factory=dict)
     """Checksums of the artist's drawings, to see whether they change during the work."""
 

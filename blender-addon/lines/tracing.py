@@ -20,7 +20,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from . import drawings as dr
-from . import looks, moved, numbers, records
+from . import looks, moved, numbers, off_ink, records
 from . import plan as pl
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -54,6 +54,9 @@ class Done:
     bare: set[int] = field(default_factory=set)
     """Scene frames on which lines were looked for, and none or hardly any were found."""
 
+    off: set[int] = field(default_factory=set)
+    """Scene frames of drawings of the artist with many strokes that lie on no line of their picture."""
+
 
 Materials = Mapping[tuple[int, bool], int]
 """By number, and whether it is a shape: the index of a material."""
@@ -79,24 +82,21 @@ def worker(plan: pl.Plan, options: Options, afterwards: Callable[[], None] = lam
         pl.find_held(plan)
         for k, group in enumerate(plan.groups):
             share, begun = 1 / len(plan.groups), k / len(plan.groups)
-            session = make(group.document, group.folder)
-            try:
-                found.append(
-                    session.trace(
-                        options.style,
-                        options.sensitivity,
-                        group.pictures,
-                        lambda done, step, begun=begun, share=share: progress(begun + share * done, step),
-                        leave_out=options.leave_out,
-                        keep_first=group.keep_first,
-                        threads=options.threads,
-                    )
-                )
-            finally:
-                session.close()
+            within = lambda done, step, begun=begun, share=share: progress(begun + share * done, step)  # noqa: E731 - bound to this group
+            more = {"leave_out": options.leave_out, "keep_first": group.keep_first}
+            found.append(_traced(group.document, group.folder, group.pictures, options, within, **more))
+        off_ink.find(plan, lambda document, folder, pictures: _traced(document, folder, pictures, options, lambda _, step: progress(1.0, step)))
         return found
 
     return jobs.Worker(run)
+
+
+def _traced(document: dict[str, Any], folder: str, pictures: tuple[int, int], options: Options, progress, **more) -> Traced:
+    session = make(document, folder)
+    try:
+        return session.trace(options.style, options.sensitivity, pictures, progress, threads=options.threads, **more)
+    finally:
+        session.close()
 
 
 @dataclass
@@ -151,6 +151,7 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
         for k, layer in enumerate(group.layers):
             record = kept.setdefault(layer.name, records.Layer())
             _mark_keys(ob, layer, group, k, keyed, record, done)
+            _mark_off(ob, layer, group, k, plan, done)
             placed = _placed(group, layer, k, traced, keyed, plan)
             yield from write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
@@ -198,6 +199,17 @@ def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: reco
             gp.put(handles[frame][0], name, content.point[name])
     dr.keep(ob, layer)
     done.kept += len(layer.edited)
+
+
+def _mark_off(ob, layer: dr.Layer, group: pl.Group, k: int, plan: pl.Plan, done: Done) -> None:
+    """Marks the strokes of the artist's drawings that lie on no line of their picture."""
+    size = group.document["footage"]["width"], group.document["footage"]["height"]
+    handles = gp.drawings(gp.find_layer(ob, layer.name)) if plan.inks.keys() & layer.keys.keys() else {}
+    for frame in sorted(plan.inks.keys() & layer.keys.keys()):
+        off = off_ink.strokes_off(layer.keys[frame], group.mapper.at(k, frame), plan.inks[frame], size)
+        off_ink.mark(handles[frame][0], off)
+        if off.any():
+            done.off.add(frame)
 
 
 def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:

@@ -52,6 +52,8 @@ class Drawn:
     """Scene frames on which many strokes end or begin: identity may be lost there."""
     bare: tuple[int, ...] = ()
     """Scene frames on which no line or hardly any was found, rising."""
+    off: tuple[int, ...] = ()
+    """Scene frames with a drawing of the artist that does not lie on the lines of its picture, rising."""
 
 
 @told
@@ -111,7 +113,8 @@ def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     worker = tracing.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))
-    return Drawn(len(done.numbers), tuple(sorted(done.frames)), done.kept, tuple(sorted(done.breaks)), tuple(sorted(done.bare)))
+    frames, breaks, bare, off = (tuple(sorted(each)) for each in (done.frames, done.breaks, done.bare, done.off))
+    return Drawn(len(done.numbers), frames, done.kept, breaks, bare, off)
 
 
 @told

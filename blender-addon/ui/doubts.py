@@ -31,31 +31,47 @@ class Marked:
 
 
 def marked(ob, frame: int) -> list[Marked]:
-    """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not."""
+    """The strokes of an object that are in doubt on a frame. Strokes that the artist changed are not, unless they lie on no line of the picture."""
     settings, found = ob.rototoon, []
     for layer in st.drawn_layers(ob, active=False):
         shown = gp.shown(layer, frame)
         if guard.is_hidden(layer) or shown is None:
             continue
         at, handle, kind = shown
-        if kind != gp.GENERATED or not (gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)):
+        traced = kind == gp.GENERATED and gp.has(handle, gp.LINE) and gp.has(handle, gp.CONFIDENCE)
+        if not traced and (kind == gp.GENERATED or not gp.has(handle, gp.OFF_INK)):
             continue
         here = settings.doubt_layer == layer.name and settings.doubt_frame == at
-        found += _of_drawing(handle, camera.layer_to_world(ob, layer), settings.doubt_number if here else 0)
+        of_drawing = _of_traced if traced else _of_own
+        found += of_drawing(handle, camera.layer_to_world(ob, layer), settings.doubt_number if here else 0)
     return found
 
 
-def _of_drawing(handle, matrix: np.ndarray, number: int) -> list[Marked]:
+def _of_own(handle, matrix: np.ndarray, number: int) -> list[Marked]:
+    """The strokes of a drawing of the artist that lie on no line of the picture."""
+    starts = gp.offsets(handle)
+    verdict = np.where(gp.value(handle, gp.OFF_INK, len(starts) - 1), doubts.DOUBTFUL, doubts.SURE)
+    return _lines(handle, matrix, number, verdict, np.diff(starts) > 1)
+
+
+def _of_traced(handle, matrix: np.ndarray, number: int) -> list[Marked]:
     starts = gp.offsets(handle)
     total, count = int(starts[-1]), len(starts) - 1
     points = gp.positions(handle, total)
     moved = (gp.value(handle, gp.TRACKED, total) != points).any(1)
     changed = np.concatenate([[0], np.cumsum(moved)])
     verdict = doubts.verdicts(doubts.of_strokes(gp.value(handle, gp.CONFIDENCE, total), starts))
-    wanted = (verdict != doubts.SURE) & gp.value(handle, gp.MADE, count) & (changed[starts[1:]] == changed[starts[:-1]])
+    wanted = gp.value(handle, gp.MADE, count) & (changed[starts[1:]] == changed[starts[:-1]])
+    return _lines(handle, matrix, number, verdict, wanted & (np.diff(starts) > 1))
+
+
+def _lines(handle, matrix: np.ndarray, number: int, verdict: np.ndarray, wanted: np.ndarray) -> list[Marked]:
+    """The wanted strokes of a drawing that are not sure."""
+    starts = gp.offsets(handle)
+    points, count = gp.positions(handle, int(starts[-1])), len(starts) - 1
     cyclic, tracks = gp.value(handle, "cyclic", count), gp.value(handle, gp.TRACK, count)
     found = []
-    for i in np.flatnonzero(wanted & (np.diff(starts) > 1)):
+    for i in np.flatnonzero(wanted & (verdict != doubts.SURE)):
         line = points[starts[i] : starts[i + 1]] @ matrix[:3, :3].T + matrix[:3, 3]
         line = np.concatenate([line, line[:1]]) if cyclic[i] else line
         found.append(Marked(line, bool(verdict[i] == doubts.LOST), bool(tracks[i] == number)))

@@ -16,7 +16,7 @@ def doubted(addon, film, fake, monkeypatch):
 
     def unsure(self, *args, **options):
         found = tracer_trace(self, *args, **options)
-        for place, stroke, value in ((2, 1, 0.7), (4, 0, 0.2), (4, 1, 0.6)):
+        for place, stroke, value in ((2, 1, 0.7), (4, 0, 0.2), (4, 1, 0.6)) if len(found.frames) > 1 else ():
             found.confidence[found.stroke_offsets[place] + stroke] = value
         return found
 

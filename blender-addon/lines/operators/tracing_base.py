@@ -89,6 +89,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
         self.warn(where_to_look(done))
         self.warn(where_nothing_is(done))
+        self.warn(where_another_picture_is(done))
         self.warn(doubts.told(done.confidence))
         return told(done)
 
@@ -109,6 +110,14 @@ def where_nothing_is(done: tracing.Done) -> str:
     """The frames on which hardly any line was found; empty if there are none."""
     frames = "frame" if len(done.bare) == 1 else "frames"
     return f"no line or hardly any was found on {frames} {listed(sorted(done.bare))}; a higher Sensitivity finds fainter ink" if done.bare else ""
+
+
+def where_another_picture_is(done: tracing.Done) -> str:
+    """The frames on which a drawing of the artist lies beside the lines of its picture; empty if there are none."""
+    if not done.off:
+        return ""
+    which = f"your drawing on frame {min(done.off)} does not lie" if len(done.off) == 1 else f"your drawings on frames {listed(sorted(done.off))} do not lie"
+    return f"{which} on the lines of the picture, which may have been drawn anew: the strokes are marked; draw them again, or delete the drawing and trace it"
 
 
 def told(done: tracing.Done) -> str:
