@@ -35,7 +35,7 @@ def sent(ob) -> tuple[dict[str, Any], dict[str, Any]] | None:
     plan = pl.make(ob, name, *lines_plan.film(ob))
     settings = ob.rototoon
     step = {"sensitivity": round(settings.line_sensitivity, 4), "confidence": round(settings.fill_confidence, 4)}
-    return plan.document, {**step, **properties.left_out_step(settings)}
+    return plan.document, {**step, **properties.left_out_step(properties.left_out(settings))}
 
 
 def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:

@@ -57,7 +57,7 @@ def sent(ob, wanted: Wanted) -> tuple[list[dict[str, Any]], str]:
     _need_lines(ob, chosen.layers)
     plan = plan_of(ob, chosen.layers, *lines_plan.film(ob), chosen.new)
     settings = ob.rototoon
-    step = {"style": settings.line_style.lower(), "sensitivity": settings.line_sensitivity, **properties.left_out_step(settings)}
+    step = {"style": settings.line_style.lower(), "sensitivity": settings.line_sensitivity, **properties.left_out_step(properties.left_out_of_lines(settings))}
     shots = []
     for group in plan.groups:
         own = [layer.name for layer in group.layers]

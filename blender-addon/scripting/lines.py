@@ -109,7 +109,7 @@ def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     plan = plan_of(ob, names, *(frames or plans.film(ob)), new)
     style = style or settings.line_style.lower()
     sensitivity = settings.line_sensitivity if sensitivity is None else sensitivity
-    options = tracing.Options(style, sensitivity, leave_out=properties.left_out(settings))
+    options = tracing.Options(style, sensitivity, leave_out=properties.left_out_of_lines(settings))
     worker = tracing.worker(plan, options)
     worker.run_here(progress)
     done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))

@@ -246,11 +246,12 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         column.use_property_decorate = False
         column.prop(settings, "line_style")
         column.prop(settings, "line_sensitivity")
-        row = column.row(heading="Leave Out", align=True)
-        row.prop(settings, "line_leave_out", text="")
-        part = row.row(align=True)
-        part.active = settings.line_leave_out
-        part.prop(settings, "line_left_out", text="")
+        for heading, chosen, colour in (("Leave Out", "line_leave_out", "line_left_out"), ("Paint Only", "line_paint_only", "line_border")):
+            row = column.row(heading=heading, align=True)
+            row.prop(settings, chosen, text="")
+            part = row.row(align=True)
+            part.active = getattr(settings, chosen)
+            part.prop(settings, colour, text="")
         column.prop(settings, "lines_layer", text="Layer")
         row = layout.row(align=True)
         row.scale_y = 1.5

@@ -73,10 +73,11 @@ def move(addon, ob, layer, frame):
 
 def test_a_film_is_traced_there_as_here(addon, film, tmp_path):  # noqa: F811
     film.rototoon.line_style, film.rototoon.line_sensitivity = "CLEAN", 1.25
-    film.rototoon.line_leave_out = True
+    film.rototoon.line_leave_out = film.rototoon.line_paint_only = True
+    film.rototoon.line_border = (0.2, 0.8, 0.2)
     before = shots.snapshot(film)
     steps, (document,) = send(tmp_path, lines="TRACE")
-    assert steps == [[{"do": "check"}, {"do": "trace", "style": "clean", "sensitivity": 1.25, "leave_out": "#a4dded"}]]
+    assert steps == [[{"do": "check"}, {"do": "trace", "style": "clean", "sensitivity": 1.25, "leave_out": "#a4dded,#33cc33"}]]
     assert document["parts"] == [] and document["drawings"] == [] and "traced" not in document
     assert shots.snapshot(film) == before, "sending changes nothing"
     assert said(addon).warnings == (), "contours are not missed"

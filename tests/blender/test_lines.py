@@ -127,6 +127,29 @@ def test_a_coloured_pencil_is_left_out(addon, film):
     assert sorted(min(range(6), key=lambda k: away(points, ls.lines(0)[k][0])) for points in found) == [0, 1, 2, 3, 4], "all but the red one"
 
 
+def test_a_pencil_that_only_bounds_paint_is_left_out_of_lines(addon, film):
+    film.rototoon.line_paint_only, film.rototoon.line_border = True, (0.9, 0.3, 0.25)
+    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+    found = ls.strokes(addon, film, "Lines", 1).values()
+    assert sorted(min(range(6), key=lambda k: away(points, ls.lines(0)[k][0])) for points in found) == [0, 1, 2, 3, 4], "all but the red one"
+
+
+@pytest.mark.parametrize("construction", [False, True])
+def test_paint_sees_the_pencil_that_only_bounds_it(addon, film, fake, monkeypatch, construction):
+    settings, asked = film.rototoon, []
+    settings.line_paint_only, settings.line_border, settings.line_leave_out = True, (1.0, 0.2, 0.2), construction
+    for kind, name in ((fake.Painter, "fill"), (fake.Tracer, "trace")):
+        call = getattr(kind, name)
+        monkeypatch.setattr(kind, name, lambda *args, _call=call, **more: asked.append(more["leave_out"]) or _call(*args, **more))
+    bpy.ops.rototoon.trace_drawing()
+    ls.put(addon, film, "Paint", 1, [(ls.lines(0)[0][0][:-1], True)], material=addon("blender.fill_materials").material(film, np.array([0.2, 0.4, 0.9])))
+    addon("blender.grease_pencil").put(handle_of(addon, film, "Paint", 1), "fill_id", np.array([1]))
+    bpy.ops.rototoon.fill_drawings()
+    blue, red = ((round(255 * value) / 255 for value in colour) for colour in (settings.line_left_out, settings.line_border))
+    both = [tuple(blue)] if construction else []
+    assert asked == [(*both, tuple(red)), tuple(both)]
+
+
 def test_a_deleted_stroke_stays_deleted_on_its_frame(addon, traced, fake):
     gp = addon("blender.grease_pencil")
     gp.remove_strokes(gp.drawings(gp.find_layer(traced, "Lines"))[4][0], [2])

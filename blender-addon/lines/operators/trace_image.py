@@ -58,7 +58,7 @@ class ROTOTOON_OT_trace_image(Long, OnDrawing, bpy.types.Operator):
             self._tidy()
             raise
         self._plan = pl.of_picture(layer, frame, path, size, _Still(self._ob, empty, self._home, size))
-        chosen = settings.line_style.lower(), settings.line_sensitivity, preferences.threads(), properties.left_out(settings)
+        chosen = settings.line_style.lower(), settings.line_sensitivity, preferences.threads(), properties.left_out_of_lines(settings)
         options = tracing.Options(*chosen)
         return tracing.worker(self._plan, options, self._tidy)
 

@@ -81,7 +81,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
         self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
-        chosen = style.lower(), self.chosen_sensitivity(settings), preferences.threads(), properties.left_out(settings)
+        chosen = style.lower(), self.chosen_sensitivity(settings), preferences.threads(), properties.left_out_of_lines(settings)
         options = tracing.Options(*chosen)
         return tracing.worker(self._plan, options)
 
