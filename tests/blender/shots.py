@@ -72,7 +72,7 @@ def drawn(number):
 
 def set_up(folder, **options):
     """A scene with the sequence in a camera's background and an object to draw on, made active."""
-    picked = draw_sequence(folder / "frames")
+    picked = draw_sequence(folder / "frames", count=COUNT)
     bpy.ops.rototoon.setup(filepath=str(picked), **options)
     bpy.context.view_layer.update()
     return bpy.context.object

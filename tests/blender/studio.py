@@ -23,8 +23,11 @@ OBJECT = "shot"
 CONTOURS, SNAPPED, LIMBS, INK, FRONT, LINES, PAINT = "Contours", "Snapped", "Limbs", "Ink", "Front", "Lines", "Paint"
 
 
-def build(addon, folder) -> str:
-    """Writes the file and returns its path. The sessions of `stand_in` must be in place."""
+def build(addon, folder, last: int = shots.COUNT, points: tuple[int, int] = (60, 40)) -> str:
+    """Writes the file and returns its path. The sessions of `stand_in` must be in place.
+
+    `last` is the frame of the second key of the ink, and `points` are the numbers of points of its line and its disc.
+    """
     ob = shots.set_up(folder)
     shots.draw(addon, ob, 1, test_style.figure())
     bpy.ops.rototoon.match_contours()
@@ -34,7 +37,7 @@ def build(addon, folder) -> str:
     bpy.ops.rototoon.track()
     bpy.ops.rototoon.snap()
     for layer, lift in ((INK, 0.0), (FRONT, 0.4)):
-        _ink(addon, ob, layer, lift)
+        _ink(addon, ob, layer, lift, last, points)
     rig = test_bones.armature()
     for who, factor in (("plain", 1.0), ("old", 0.7)):
         for motion, count in (("walk", 8), ("wave", 6)):
@@ -67,20 +70,20 @@ def come_back(addon, ob, folder, shift: float = 1.0, name: str = "", **fields) -
     (results / "batch.json").write_text(json.dumps(record))
 
 
-def _ink(addon, ob, name: str, lift: float) -> None:
+def _ink(addon, ob, name: str, lift: float, last: int, points: tuple[int, int]) -> None:
     """Two keys with a line behind a filled disc; on `FRONT` a little higher."""
     gp = addon("blender.grease_pencil")
     layer = ob.data.layers.new(name)
-    turn = np.linspace(0, 2 * np.pi, 40, endpoint=False)
-    for frame, along in ((1, 0.0), (9, 0.7)):
-        line = np.stack([np.linspace(-2, 2, 60) + along, 0 * np.arange(60), 0.1 * np.sin(np.linspace(0, 3, 60)) + lift], 1)
+    way, turn = np.linspace(0, 1, points[0]), np.linspace(0, 2 * np.pi, points[1], endpoint=False)
+    for frame, along in ((1, 0.0), (last, 0.7)):
+        line = np.stack([4 * way - 2 + along, 0 * way, 0.1 * np.sin(3 * way) + lift], 1)
         disc = np.stack([0.6 * np.cos(turn) + along, 0 * turn, 0.6 * np.sin(turn) + lift], 1)
         drawing = layer.frames.new(frame).drawing
-        drawing.add_strokes([60, 40])
+        drawing.add_strokes(list(points))
         gp.put(drawing, "position", np.concatenate([line, disc]))
         gp.put(drawing, "cyclic", np.array([False, True]))
         for each in ("radius", "opacity"):
-            gp.put(drawing, each, gp.blank(each, 100))
+            gp.put(drawing, each, gp.blank(each, sum(points)))
         gp.put(drawing, "fill_id", np.array([0, 1]))
         drawing.tag_positions_changed()
     if not gp.FILL_BY_ID:
@@ -185,8 +188,8 @@ def _in_between_and_moved(addon, ob):
     _in_between(addon, ob)
     gp = addon("blender.grease_pencil")
     for name in (INK, FRONT):
-        handle = gp.drawings(ob.data.layers[name])[9][0]
-        points = gp.positions(handle, 100)
+        handle = list(gp.drawings(ob.data.layers[name]).values())[-1][0]
+        points = gp.positions(handle, int(gp.offsets(handle)[-1]))
         points[:, 2] += 0.2
         gp.put(handle, "position", points)
 
