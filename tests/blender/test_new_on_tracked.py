@@ -4,18 +4,28 @@ import bpy
 import numpy as np
 import pytest
 import shots
+from line_stage import opened
 
 TURN = np.linspace(0, 2 * np.pi, 14, endpoint=False)
 CIRCLE = np.column_stack([np.cos(TURN), np.sin(TURN)])
 FAR = (130.0, 15.0)
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where the tracked scene is kept."""
+    return tmp_path_factory.mktemp("tracked")
+
+
 @pytest.fixture
-def tracked(addon, library, tmp_path):
-    """The diamond (Part 1) and the square (Part 2), tracked with the real library from frame 1 to 9."""
-    ob = shots.two_keys(addon, tmp_path)
-    bpy.ops.rototoon.track()
-    return ob
+def tracked(addon, library, folder):
+    """The diamond (Part 1) and the square (Part 2), tracked with the real library from frame 1 to 9. The first test tracks them."""
+
+    def track():
+        shots.two_keys(addon, folder)
+        bpy.ops.rototoon.track()
+
+    return opened(folder / "frame", "tracked", track)
 
 
 def keys(addon, ob):
