@@ -4,6 +4,7 @@
 
 ====================================  ==============================================================
 `strokes`, `stroke_lines`, `colours`  complete drawings as arrays; strokes as lines; their visible colours
+`stroke_rows`                         strokes that are written into a drawing
 `marks`                               whether the artist has changed a generated drawing
 `hierarchy`                           parents and groups of layers
 `camera`, `placement`, `projection`   pixels ↔ layer points

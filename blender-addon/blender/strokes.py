@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from . import grease_pencil as gp
-from . import guard
+from . import guard, stroke_rows
 
 CATMULL_ROM, POLY, BEZIER, NURBS = range(4)
 _TYPE_NAMES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")
@@ -90,7 +90,7 @@ def read(drawing) -> Content:
     return content
 
 
-def of_rows(rows: gp.Rows) -> Content:
+def of_rows(rows: stroke_rows.Rows) -> Content:
     """The content of a drawing that has only these strokes."""
     content = Content(rows.sizes, np.full(len(rows.sizes), POLY, np.int8))
     for name, values in rows.values.items():

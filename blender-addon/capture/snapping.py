@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import marks, own_attributes
+from ..blender import marks, own_attributes, stroke_rows
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from . import writing
@@ -98,8 +98,8 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
             if curves.get((part.number, frame))
         ]
         rows = _rows(strokes, kinds)
-        if not gp.has_made(drawings[frame][0], rows):
-            gp.replace_made(drawings[frame][0], rows)
+        if not stroke_rows.has_made(drawings[frame][0], rows):
+            stroke_rows.replace_made(drawings[frame][0], rows)
         written += len(strokes)
     marks.note(ob.data, layer.name, frames)
     return written
@@ -134,8 +134,8 @@ def _stroke(part: Part, frame: int, segments: list[np.ndarray], style, mapper: M
     return stroke
 
 
-def _rows(strokes: list[dict[str, np.ndarray]], kinds: dict[str, own_attributes.Kind]) -> gp.Rows:
-    rows = gp.Rows(np.array([len(stroke["position"]) for stroke in strokes], np.int32), own=kinds)
+def _rows(strokes: list[dict[str, np.ndarray]], kinds: dict[str, own_attributes.Kind]) -> stroke_rows.Rows:
+    rows = stroke_rows.Rows(np.array([len(stroke["position"]) for stroke in strokes], np.int32), own=kinds)
     names = {name for stroke in strokes for name in stroke}
     for name in sorted(names):
         values = []

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import stroke_rows
 from ..blender import strokes as st
 
 Contours = tuple[tuple[int, int], ...]
@@ -32,7 +33,7 @@ class Keys:
                     numbers = gp.value(handle, gp.PART, len(starts) - 1)
                     self._frames.setdefault(_contours(numbers, np.diff(starts)), []).append(frame)
 
-    def begin(self, layer: bpy.types.bpy_struct, frame: int, rows: gp.Rows) -> None:
+    def begin(self, layer: bpy.types.bpy_struct, frame: int, rows: stroke_rows.Rows) -> None:
         """Replaces a new drawing by a copy of the nearest key with the contours of `rows`, if there is one."""
         found = self._frames.get(_contours(rows.values[gp.PART], rows.sizes))
         if not found:

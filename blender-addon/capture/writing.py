@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import own_attributes
+from ..blender import own_attributes, stroke_rows
 from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
@@ -253,7 +253,7 @@ def write_steps(layer, block: Block, before: Iterable[int], read: Mapping[int, n
                 keys.begin(_layer(data, name), frame, rows_of(block, row))
         drawings = gp.drawings(_layer(data, name))
         for frame, row in due:
-            gp.replace_made(drawings[frame][0], rows_of(block, row))
+            stroke_rows.replace_made(drawings[frame][0], rows_of(block, row))
         yield 1 - len(left) / len(wanted)
     _end(_layer(data, name), block, wanted, [frame for frame in before if frame not in wanted])
     return int(block.present.sum())
@@ -295,7 +295,7 @@ def _due(data, name: str, block: Block, left: list[tuple[int, int]], old: set[in
             handle = drawings[frame][0]
             if frame in old and frame in read and not np.array_equal(gp.positions(handle, len(read[frame])), read[frame]):
                 raise Changed()
-            if frame not in old or not gp.has_made(handle, rows_of(block, row)):
+            if frame not in old or not stroke_rows.has_made(handle, rows_of(block, row)):
                 due.append((frame, row))
             taken += 1
             if time.perf_counter() > until or len(due) == AT_ONCE:
@@ -304,12 +304,12 @@ def _due(data, name: str, block: Block, left: list[tuple[int, int]], old: set[in
     return due
 
 
-def rows_of(block: Block, row: int) -> gp.Rows:
+def rows_of(block: Block, row: int) -> stroke_rows.Rows:
     """The strokes of one row of a block, which is a frame."""
     present = block.present[row]
     if block.order is not None:
         return _ordered(block, row)
-    rows = gp.Rows(block.sizes[present], own=block.own)
+    rows = stroke_rows.Rows(block.sizes[present], own=block.own)
     if present.all():
         rows.values = {name: values[row] for name, values in block.point.items()}
         rows.values |= {name: values[row] for name, values in block.curve.items()}
@@ -320,10 +320,10 @@ def rows_of(block: Block, row: int) -> gp.Rows:
     return rows
 
 
-def _ordered(block: Block, row: int) -> gp.Rows:
+def _ordered(block: Block, row: int) -> stroke_rows.Rows:
     strokes = block.order[row][block.present[row][block.order[row]]]
     points = np.concatenate([np.arange(block.columns[i].start, block.columns[i].stop) for i in strokes])
-    rows = gp.Rows(block.sizes[strokes], own=block.own)
+    rows = stroke_rows.Rows(block.sizes[strokes], own=block.own)
     rows.values = {name: values[row][points] for name, values in block.point.items()}
     rows.values |= {name: values[row][strokes] for name, values in block.curve.items()}
     return rows

@@ -8,7 +8,7 @@ import numpy as np
 from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, placement
+from ..blender import guard, placement, stroke_rows
 from ..capture import contours, corrections, correspondence, document, ends, snapping, writing
 from . import files
 
@@ -78,7 +78,7 @@ def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
     drawings = gp.drawings(layer)
     for frame, strokes in drawn.items():
         strokes.sort(key=lambda row: row[:2])
-        rows = gp.Rows(np.array([len(points) for *_, points in strokes], np.int32))
+        rows = stroke_rows.Rows(np.array([len(points) for *_, points in strokes], np.int32))
         points = np.concatenate([points for *_, points in strokes])
         rows.values = {
             "position": mapper.at(0, frame).to_layer(points).astype(np.float32),
@@ -89,7 +89,7 @@ def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
             gp.PART: np.array([number for _, number, _, _ in strokes], np.int32),
             gp.CONTROL: np.concatenate([correspondence.identity(len(points)) for *_, points in strokes]),
         }
-        gp.append(drawings[frame][0], rows)
+        stroke_rows.append(drawings[frame][0], rows)
 
 
 def _results(part: contours.Part, entry: dict[str, Any], mapper, offset: int):

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, fields, replace
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, line_materials, marks
+from ..blender import guard, line_materials, marks, stroke_rows
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from ..common import jobs
@@ -178,10 +178,10 @@ def _write_keys(ob, target, mapper: Mapper, keys: Strokes, followed: set[int], r
             record.numbers[frame] = [stroke.number for stroke in strokes if stroke.number]
         else:
             rows.values[gp.LINE] = np.zeros(int(rows.sizes.sum()), np.int32)
-        gp.append(handles[frame][0], rows)
+        stroke_rows.append(handles[frame][0], rows)
 
 
-def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: Inks) -> gp.Rows:
+def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: Inks) -> stroke_rows.Rows:
     """Strokes of a frame, each with a material of just its colour, or of that in `inks` and tinted."""
     numbers = np.array([stroke.number for stroke in strokes], np.int32)
     # Materials and fills go by numbers. Strokes without a number have colours of their own, so all get others meanwhile.
@@ -216,7 +216,7 @@ def _material(ob, colour: np.ndarray, fill_colour: np.ndarray | None, fill: bool
     return looks.exact_material(ob, colour, fill)
 
 
-def _tint(rows: gp.Rows, strokes: list[tracing.Placed], shown: list[Ink]) -> None:
+def _tint(rows: stroke_rows.Rows, strokes: list[tracing.Placed], shown: list[Ink]) -> None:
     """Colours the lines and fills whose colour is not that of their material."""
     lines, fills = (np.zeros((len(strokes), 4), np.float32) for _ in range(2))
     for line, fill, stroke, (ink, fill_ink) in zip(lines, fills, strokes, shown):
@@ -285,7 +285,7 @@ def _write_between(ob, target, mapper: Mapper, frame: int, strokes: list[tracing
     if (opacities < 1).any():
         rows.values["opacity"] = np.repeat(opacities, rows.sizes)
         rows.values["fill_opacity"] = opacities
-    gp.append(gp.drawings(target)[frame][0], rows)
+    stroke_rows.append(gp.drawings(target)[frame][0], rows)
     return tween_records.checksum(rows.values["position"])
 
 

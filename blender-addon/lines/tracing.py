@@ -15,7 +15,7 @@ from rototoon import Session
 from rototoon.lines import Traced
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, holds, marks, own_attributes
+from ..blender import guard, holds, marks, own_attributes, stroke_rows
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
@@ -296,7 +296,7 @@ def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, recor
     handles, names, own, materials = gp.drawings(target), shown.names(), shown.own(), materials_of(ob, placed, shown, known)
     for count, (frame, strokes) in enumerate(placed.items(), 1):
         rows = rows_of(frame, strokes, shown, names, materials, mapper.at(k, frame), own)
-        gp.replace_made(handles[frame][0], rows)
+        stroke_rows.replace_made(handles[frame][0], rows)
         if gp.drawings(target)[frame][1] != gp.GENERATED:
             gp.set_keyframe_type(target, {frame: gp.GENERATED})
         record.sums[frame] = records.checksum(rows.values["position"], rows.values[gp.TRACK], rows.sizes)
@@ -360,9 +360,9 @@ def materials_of(ob, placed, shown: looks.Looks, known: Materials = _NONE) -> Ma
 
 def rows_of(
     frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials: Materials, mapping, own: Own = _NO_OWN
-) -> gp.Rows:
+) -> stroke_rows.Rows:
     """The strokes of a frame as attributes. `names` and `own` are those of their looks."""
-    rows = gp.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32), own=dict(own))
+    rows = stroke_rows.Rows(np.array([len(stroke.points) for stroke in strokes], np.int32), own=dict(own))
     points = np.concatenate([stroke.points for stroke in strokes]) if strokes else np.zeros((0, 2))
     total, count = len(points), len(strokes)
     places = mapping.to_layer(points) if total else np.zeros((0, 3))
@@ -394,7 +394,7 @@ def rows_of(
     return rows
 
 
-def _dress(rows: gp.Rows, frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials) -> None:
+def _dress(rows: stroke_rows.Rows, frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials) -> None:
     """Gives strokes the look of the drawings around the frame, and those that have none a material of their ink."""
     starts = np.concatenate([[0], np.cumsum(rows.sizes)])
     for i, stroke in enumerate(strokes):

@@ -14,7 +14,7 @@ from rototoon import Session
 from rototoon.fills import Filled
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, holds
+from ..blender import guard, holds, stroke_rows
 from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs, polygons
@@ -185,7 +185,7 @@ def _write(ob, handle, plan: pl.Plan, frame: int, regions: list[painted.Region],
     """Writes the generated strokes of a drawing, below the artist's."""
     mapping = plan.mapper.at(0, frame)
     if sheet is None or not len(sheet.own):
-        gp.replace_made(handle, painted.rows(ob, regions, mapping, plan.palette))
+        stroke_rows.replace_made(handle, painted.rows(ob, regions, mapping, plan.palette))
         return
     own = st.chosen(sheet.content, sheet.own)
     shapes_ = sheets.shapes_of(ob, own, mapping, range(len(own.sizes)))

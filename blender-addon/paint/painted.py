@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..blender import fill_materials
+from ..blender import fill_materials, stroke_rows
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..common import polygons
@@ -66,10 +66,10 @@ class Palette:
         return look
 
 
-def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[int] = ()) -> gp.Rows:
+def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[int] = ()) -> stroke_rows.Rows:
     """Regions as attributes of generated strokes. `taken` are the fills of other strokes of the drawing."""
     lines = [shapes.joined(region.outline, region.holes) for region in regions]
-    found = gp.Rows(np.array([len(line) for line in lines], np.int32))
+    found = stroke_rows.Rows(np.array([len(line) for line in lines], np.int32))
     total, count = int(found.sizes.sum()), len(lines)
     for name in ("radius", "opacity"):
         found.values[name] = gp.blank(name, total)

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, placement
+from ..blender import guard, placement, stroke_rows
 from ..blender.errors import Problem
 from ..capture import closing, contours, correspondence, document, identity
 from ..common.operators import OnDrawing
@@ -160,7 +160,7 @@ def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, ma
     if len(gone):
         gp.remove_strokes(handle, gone.tolist())
     points = np.concatenate(list(polygons.values()))
-    rows = gp.Rows(np.array([len(each) for each in polygons.values()], np.int32))
+    rows = stroke_rows.Rows(np.array([len(each) for each in polygons.values()], np.int32))
     rows.values = {
         "position": points.astype(np.float32),
         "radius": np.full(len(points), radius, np.float32),
@@ -171,5 +171,5 @@ def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, ma
         gp.MADE: np.zeros(len(polygons), bool),
         gp.CONTROL: np.concatenate([controls[name] for name in polygons]),
     }
-    gp.append(handle, rows)
+    stroke_rows.append(handle, rows)
     gp.set_keyframe_type(layer, {frame: gp.KEYFRAME})

@@ -85,13 +85,13 @@ def strokes(addon, ob, layer, frame):
 
 def put(addon, ob, layer, frame, drawn, radius=0.03, opacity=0.8, material=0):
     """Draws strokes on a frame as the artist does: pixels and whether they are closed."""
-    gp, placement = addon("blender.grease_pencil"), addon("blender.placement")
+    gp, placement, stroke_rows = addon("blender.grease_pencil"), addon("blender.placement"), addon("blender.stroke_rows")
     target = gp.layer(ob, layer)
     gp.make_frames(target, [frame], gp.KEYFRAME)
     handle = gp.drawings(target)[frame][0]
     mapping = placement.Mapper(ob, [frame], {}, [layer]).at(0, frame)
     points = np.concatenate([points for points, _ in drawn])
-    rows = gp.Rows(np.array([len(points) for points, _ in drawn], np.int32))
+    rows = stroke_rows.Rows(np.array([len(points) for points, _ in drawn], np.int32))
     along = np.concatenate([np.linspace(0.5, 1.5, len(points)) for points, _ in drawn])
     rows.values = {
         "position": mapping.to_layer(points).astype(np.float32),
@@ -100,5 +100,5 @@ def put(addon, ob, layer, frame, drawn, radius=0.03, opacity=0.8, material=0):
         "cyclic": np.array([closed for _, closed in drawn]),
         "material_index": np.full(len(drawn), material, np.int32),
     }
-    gp.append(handle, rows)
+    stroke_rows.append(handle, rows)
     target.id_data.layers.active = target

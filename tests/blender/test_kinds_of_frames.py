@@ -90,8 +90,8 @@ def test_frames_that_share_a_drawing_are_written_apart(addon):
         layer.frames.copy(1, number, instance_drawing=True)
     gp.set_keyframe_type(layer, {5: gp.GENERATED, 9: "BREAKDOWN"})
     gp.make_frames(layer, [5, 7], gp.GENERATED)
-    rows = gp.Rows(np.array([2], np.int32), {"position": np.zeros((2, 3), np.float32), gp.MADE: np.array([True])})
-    gp.replace_made(gp.drawings(layer)[5][0], rows)
+    rows = addon("blender.stroke_rows").Rows(np.array([2], np.int32), {"position": np.zeros((2, 3), np.float32), gp.MADE: np.array([True])})
+    addon("blender.stroke_rows").replace_made(gp.drawings(layer)[5][0], rows)
     found = gp.drawings(layer)
     assert {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in found.items()} == {1: 1, 5: 2, 7: 0, 9: 1}
     assert [kind for _, kind in found.values()] == [gp.KEYFRAME, gp.GENERATED, gp.GENERATED, "BREAKDOWN"]
@@ -130,7 +130,7 @@ def test_tracked_contours_are_polylines_whatever_the_weights(addon, tmp_path, ki
     gp.drawings(layer)[1][0].set_types(type=kind, indices=[0])
     keys = weights.Keys(layer)
     gp.make_frames(layer, [4], gp.GENERATED)
-    keys.begin(layer, 4, gp.Rows(np.array([4], np.int32), {gp.PART: np.array([1], np.int32)}))
+    keys.begin(layer, 4, addon("blender.stroke_rows").Rows(np.array([4], np.int32), {gp.PART: np.array([1], np.int32)}))
     key, made = (st.read(gp.drawings(layer)[frame][0]) for frame in (1, 4))
     assert (made.types.tolist(), made.sizes.tolist()) == ([st.POLY], [4])
     assert made.point["position"] == pytest.approx(key.point["position"])

@@ -472,12 +472,12 @@ def test_a_shape_on_a_line_is_told(addon, clicked):
     (start, *_, end) = ls.lines(0)[4][0]
     middle, side = (start + end) / 2, (end - start)[::-1] * (1, -1) / np.linalg.norm(end - start)
     sliver = np.stack([middle - 0.3 * side, middle + 0.3 * side, middle + 0.02 * (end - start)])
-    rows = gp.Rows(np.array([3], np.int32))
+    rows = addon("blender.stroke_rows").Rows(np.array([3], np.int32))
     rows.values = {"position": mapping.to_layer(sliver).astype(np.float32), "cyclic": np.array([True])}
     rows.values["material_index"] = np.array([addon("blender.fill_materials").material(clicked, np.array(GREEN))], np.int32)
     if gp.FILL_BY_ID:
         rows.values["fill_id"] = np.array([77], np.int32)
-    gp.append(handle_of(addon, clicked, LAYER, 1), rows)
+    addon("blender.stroke_rows").append(handle_of(addon, clicked, LAYER, 1), rows)
     assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
     assert "a shape of yours lies on a line: frame 1" in said(addon).text
     assert len(read(addon, clicked, 1).sizes) == 5

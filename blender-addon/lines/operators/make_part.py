@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, placement, selection, stroke_lines
+from ...blender import guard, placement, selection, stroke_lines, stroke_rows
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...capture import document, identity
@@ -98,7 +98,7 @@ def _draw(ob, frame: int, contour: np.ndarray) -> None:
     layer = gp.layer(ob, name)
     mapping = placement.Mapper(ob, [frame], {}, [name]).at(0, frame)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
-    rows = gp.Rows(np.array([len(contour)], np.int32))
+    rows = stroke_rows.Rows(np.array([len(contour)], np.int32))
     rows.values = {
         "position": mapping.to_layer(contour).astype(np.float32),
         "radius": gp.blank("radius", len(contour)),
@@ -108,7 +108,7 @@ def _draw(ob, frame: int, contour: np.ndarray) -> None:
         gp.PART: np.zeros(1, np.int32),
         gp.MADE: np.zeros(1, bool),
     }
-    gp.append(gp.drawings(layer)[frame][0], rows)
+    stroke_rows.append(gp.drawings(layer)[frame][0], rows)
 
 
 CLASSES = (ROTOTOON_OT_make_part,)
