@@ -7,7 +7,7 @@ document draws: on its frames, and between two of its drawings that come in. The
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
@@ -125,14 +125,27 @@ def _cleared(ob, name: str, target, film: Film) -> set[int]:
     tweening.adopt(target, found, found.edited)
     (layer,) = dr.read(ob, [name])
     dr.keep(ob, layer)
+    record = _followed(target, record, found.keys, layer.other)
     between = {frame for span in record.spans.values() for frame in span.sums if frame in layer.other}
     own = set(layer.kept - between)
     replaced = {frame for frame in between if _is_replaced(frame, film, own)}
     gp.remove_frames(target, sorted(layer.made.keys() | replaced))
     if name in kept:
+        kept[name] = record
         _forget(record, replaced)
         tween_records.write(ob.data, kept)
     return own
+
+
+def _followed(target, record: tween_records.Layer, keys: list[int], between: Iterable[int]) -> tween_records.Layer:
+    """The record of a layer with the frames that its keys and its in-betweens have now. An in-between that lies as it was drawn on another frame was
+    moved there."""
+    now = moved_keys.sums_of(target, between)
+    record = moved_keys.followed(target, record, keys).record
+    for first, span in record.spans.items():
+        drawn = set(span.sums.values())
+        span.sums = {frame: total for frame, total in now.items() if first < frame < span.last and total in drawn} or span.sums
+    return record
 
 
 def _is_replaced(frame: int, film: Film, own: set[int]) -> bool:

@@ -139,6 +139,17 @@ def tweened(addon):
     return ob
 
 
+def test_in_betweens_that_were_moved_are_no_drawings_of_the_artist(addon, film, tmp_path):
+    ob = tweened(addon)
+    exported(tmp_path / "tween.json")
+    frames = ob.data.layers["Lines"].frames
+    for frame in range(6, 0, -1):
+        frames.move(frame, frame + 1)
+    imported(tmp_path / "tween.json", into="ACTIVE")
+    assert {frame: kind for frame, kind in kinds(addon, ob, "Lines").items() if kind == KEY} == dict.fromkeys((1, 2, 6, 7), KEY)
+    assert not any("drawings of yours" in warning for warning in said(addon).warnings if "stay as they were" in warning)
+
+
 def test_in_betweens_go_out_and_come_in(addon, film, tmp_path):
     ob = tweened(addon)
     before = {frame: ls.strokes(addon, ob, "Lines", frame) for frame in range(1, 7)}
