@@ -6,7 +6,10 @@ from pathlib import Path
 import bpy
 import live_stage
 import numpy as np
+import pytest
 import shots
+
+pytestmark = pytest.mark.long
 
 FRAMES, PARTS, POINTS, STEPS = 40, 10, 500, 5
 

@@ -8,6 +8,8 @@ import pytest
 import shots
 from live_stage import settle, switched_on, work_off
 
+pytestmark = pytest.mark.long
+
 
 @pytest.fixture
 def sliced(addon, live, monkeypatch):

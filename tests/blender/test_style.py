@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 import shots
 
+pytestmark = pytest.mark.long
+
 SIZE = shots.SIZE
 
 
