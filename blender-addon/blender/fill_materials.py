@@ -10,6 +10,8 @@ from .line_materials import encoded, to_linear
 
 NAME = "Paint "
 """Beginning of the names. The colour as hexadecimal digits follows."""
+NOTHING = "No Paint"
+"""Name of the material of shapes whose region stays without paint. Its fill is transparent, and so is that of each such material."""
 SAME = 0.6 / 255
 """Largest difference of a channel between colours that share a material."""
 
@@ -18,11 +20,37 @@ def material(ob: bpy.types.Object, colour: np.ndarray) -> int:
     """Index of the object's material for a colour (sRGB, 0 to 1). It is made if there is none."""
     for place, known in enumerate(ob.data.materials):
         style = known.grease_pencil if known is not None else None
-        if style is None or not known.name.startswith(NAME) or not _fills(style):
+        if style is None or not known.name.startswith(NAME) or not _fills(style) or style.fill_color[3] <= 0.0:
             continue
         if np.abs(encoded(np.array(style.fill_color[:3], np.float64)) - colour).max() <= SAME:
             return place
     return _make(ob, colour)
+
+
+def nothing(ob: bpy.types.Object) -> int:
+    """Index of the object's material of shapes whose region stays without paint. It is made if there is none."""
+    for place, bare in enumerate(bare_of(ob)):
+        if bare and _fills(ob.data.materials[place].grease_pencil):
+            return place
+    place = _append(ob, NOTHING, np.ones(3))
+    style = ob.data.materials[place].grease_pencil
+    style.color = style.fill_color = (1.0, 1.0, 1.0, 0.0)
+    return place
+
+
+def bare_of(ob: bpy.types.Object) -> np.ndarray:
+    """For each of the object's materials: whether its fill is transparent, which says that a region stays without paint."""
+    styles = [material.grease_pencil if material is not None else None for material in ob.data.materials]
+    return np.array([style is not None and style.fill_color[3] <= 0.0 for style in styles], bool)
+
+
+def are_bare(ob: bpy.types.Object, content) -> np.ndarray:
+    """For each stroke: whether its fill is transparent, and no tint covers that."""
+    bare = bare_of(ob)
+    if not len(bare):
+        return np.zeros(len(content.sizes), bool)
+    index = np.clip(content.strokes("material_index"), 0, len(bare) - 1)
+    return bare[index] & (content.strokes("fill_color")[:, 3] <= 0.0)
 
 
 def _fills(style) -> bool:
@@ -31,8 +59,11 @@ def _fills(style) -> bool:
 
 
 def _make(ob: bpy.types.Object, colour: np.ndarray) -> int:
-    digits = "".join(f"{round(255 * float(v)):02x}" for v in colour)
-    made = bpy.data.materials.new(NAME + digits)
+    return _append(ob, NAME + "".join(f"{round(255 * float(v)):02x}" for v in colour), colour)
+
+
+def _append(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
+    made = bpy.data.materials.new(name)
     bpy.data.materials.create_gpencil_data(made)
     style = made.grease_pencil
     style.color = style.fill_color = (*to_linear(np.asarray(colour, np.float64)), 1.0)

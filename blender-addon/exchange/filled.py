@@ -13,7 +13,7 @@ import numpy as np
 from rototoon import RototoonError, Session
 from rototoon.fills import Click
 
-from ..blender import colours, holds
+from ..blender import colours, fill_materials, holds
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common import polygons
@@ -36,8 +36,7 @@ def read(project: dict[str, Any]) -> tuple[dict[int, list[Click]], dict[int, lis
     except RototoonError as error:
         raise Problem(str(error)) from error
     found: dict[int, list[Click]] = {}
-    # A region that stays without paint has no shape on a layer.
-    for click in (click for click in fills if click.colour is not None):
+    for click in fills:
         found.setdefault(click.frame, []).append(click)
     return found, {frame: filling.regions_on(filled, frame) for frame in filled.frames.tolist()}
 
@@ -70,8 +69,7 @@ def of(ob) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
         mapping = mapper.at(0, frame)
         asked = paint_clicks.of(ob, sheet, mapping, ob.rototoon.height)
         if asked:
-            regions = [{"at": list(click.at), "colour": list(click.colour)} for click in asked]
-            fills.append({"frame": frame - offset, "regions": regions})
+            fills.append({"frame": frame - offset, "regions": paint_clicks.asked(asked)})
         regions = _regions(ob, sheet, mapping, fresh)
         if regions or not len(sheet.own):
             shown[frame] = regions
@@ -90,7 +88,8 @@ def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dic
     seen = colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1).round(6)
     sure = np.where(sheet.made, doubts.of_strokes(content.point.get(gp.CONFIDENCE), content.starts), 1.0).round(3)
     found: dict[int, tuple[float, dict[str, Any]]] = {}
-    for shape in sheets.shapes_of(ob, content, mapping, range(len(numbers))):
+    bare = fill_materials.are_bare(ob, content)
+    for shape in sheets.shapes_of(ob, content, mapping, np.flatnonzero(~bare).tolist()):
         first = shape.strokes[0]
         number, (outline, *others) = int(numbers[first]) or next(fresh), sheets.loops_of(shape)
         size = abs(polygons.area(outline))

@@ -70,5 +70,9 @@ def _same(now: Sequence[Mapping[str, Any]], before: Sequence[Mapping[str, Any]])
 
 
 def _alike(one: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]]) -> bool:
-    rows = [np.array([[*click["at"], *click["colour"]] for click in clicks], np.float64) for clicks in (one, other)]
+    def row(click: Mapping[str, Any]) -> list[float]:
+        # No paint is no colour.
+        return [*click["at"], *(click["colour"] or [-1.0] * 3)]
+
+    rows = [np.array([row(click) for click in clicks], np.float64) for clicks in (one, other)]
     return rows[0].shape == rows[1].shape and bool((np.abs(rows[0] - rows[1]) <= SAME).all())

@@ -7,12 +7,14 @@ region that leaks parts it, and the shape before must give way.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from rototoon.fills import Leak
 
-from ..blender import camera, colours, footage, guard
+from ..blender import camera, colours, fill_materials, footage, guard
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..blender.errors import Problem
@@ -36,10 +38,13 @@ class Before:
     kind: str
     after: int
     """Checksum of the artist's strokes after the click."""
+    told: str = ""
+    """What the artist should know of the region at once."""
 
 
-def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...], sensitivity: float) -> Before:
-    """Fills the region at a place of the picture (footage pixels) with a colour (sRGB). Raises a `Problem` on a line."""
+def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...] | None, sensitivity: float) -> Before:
+    """Fills the region at a place of the picture (footage pixels) with a colour (sRGB); `None` says that it stays without paint. Raises a
+    `Problem` on a line."""
     guard.need(ob)
     name = pl.layer_name(ob)
     pattern = footage.pattern_of(ob)
@@ -51,13 +56,14 @@ def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...],
     mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
     sheet = drawn.get(frame) or sheets.Sheet(st.of_rows(painted.rows(ob, [], mapping, painted.Palette())), np.zeros(0, bool), gp.KEYFRAME)
     own = clicks.of(ob, sheet, mapping, ob.rototoon.height)
-    new = clicks.Click((float(place[0]), float(place[1])), tuple(np.round(colour, 6).tolist()), -1)
-    regions = _regions(ob, pattern, frame, [*own, new], sensitivity)
+    chosen = None if colour is None else tuple(np.round(colour, 6).tolist())
+    new = clicks.Click((float(place[0]), float(place[1])), chosen, -1)
+    regions, leak = _regions(ob, pattern, frame, [*own, new], sensitivity)
     if _at(regions, new.at) is None:
         raise Problem("There is a line here, or no picture: click inside of a region")
     _write(ob, name, frame, sheet, mapping, regions, own, new)
     after = sheets.read(ob, name)[frame].sum()
-    return Before(frame, sheet.content if frame in drawn else None, sheet.kind, after)
+    return Before(frame, sheet.content if frame in drawn else None, sheet.kind, after, _told(leak))
 
 
 def take_back(ob, before: Before) -> None:
@@ -88,15 +94,36 @@ MOST_HELD = 100
 """Most frames that a held drawing is looked for."""
 
 
-def _regions(ob, pattern: str, frame: int, asked: list[clicks.Click], sensitivity: float) -> list[painted.Region]:
+def _told(leak: Leak | None) -> str:
+    if leak is None:
+        return ""
+    gap = f"a gap of about {max(leak.width, 1):.0f} px in its outline at ({leak.gap[0]:.0f}, {leak.gap[1]:.0f})"
+    if leak.parted:
+        return f"{gap} was closed"
+    width, height = leak.size
+    filled = f"{width} × {height} px up to the picture's edge are filled through {gap}"
+    return f"{filled}: if that is not meant, undo, or click around it with No Paint"
+
+
+def _stand_in(taken: Iterable[tuple[float, ...] | None]) -> tuple[float, ...]:
+    """A colour that no click has: that of regions without paint, whose outlines are wanted too."""
+    used = set(taken)
+    return next(own for own in ((k / 4096, 0.5, 1.0) for k in range(4097)) if own not in used)
+
+
+def _regions(ob, pattern: str, frame: int, own: list[clicks.Click], sensitivity: float) -> tuple[list[painted.Region], Leak | None]:
+    """The regions of clicks, and whether the last one leaks."""
     number = frame - ob.rototoon.frame_offset
-    fills = [{"frame": number, "regions": [{"at": list(click.at), "colour": list(click.colour)} for click in asked]}]
+    bare = _stand_in(click.colour for click in own)
+    asked = [replace(click, colour=bare) if click.colour is None else click for click in own]
+    fills = [{"frame": number, "regions": clicks.asked(asked)}]
     shown = footage.fields(ob, pattern)
     document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
     session = filling.make(document, os.path.dirname(pattern))
     try:
         found = session.fill(None, sensitivity, (number, number), leave_out=properties.left_out(ob.rototoon))
-        return filling.regions_on(found, number)
+        leak = next((leak for leak in found.leaking if leak.click == len(asked) - 1), None)
+        return filling.regions_on(found, number), leak
     finally:
         session.close()
 
@@ -131,7 +158,8 @@ def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own
 
 
 def _own_region(region: painted.Region, click: clicks.Click) -> painted.Region:
-    return painted.Region(region.number, region.outline, region.holes, np.array(click.colour))
+    colour = None if click.colour is None else np.array(click.colour)
+    return painted.Region(region.number, region.outline, region.holes, colour)
 
 
 def _is_buckets(content: st.Content, stroke: int) -> bool:
@@ -168,7 +196,8 @@ def pixel_of(ob, frame: int, start: np.ndarray, way: np.ndarray) -> tuple[float,
 
 
 def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] | None:
-    """The colour of the paint at a place (footage pixels) on a frame; `None` if there is none."""
+    """The colour of the paint at a place (footage pixels) on a frame; `None` if there is none, and an empty one if a shape says that none is
+    wanted."""
     name = ob.rototoon.fills_layer
     drawn = sheets.read(ob, name)
     shown = max((each for each in drawn if each <= frame), default=None)
@@ -176,8 +205,8 @@ def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] |
         return None
     content = drawn[shown].content
     mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
-    seen = colours.of_strokes(ob, content, colours.palette(ob))
+    seen, bare = colours.of_strokes(ob, content, colours.palette(ob)), fill_materials.are_bare(ob, content)
     for shape in reversed(sheets.shapes_of(ob, content, mapping, range(len(content.sizes)))):
         if polygons.inside(shape.loops, np.array([place], np.float64))[0]:
-            return tuple(seen[shape.strokes[0]].clip(0, 1).tolist())
+            return () if bare[shape.strokes[0]] else tuple(seen[shape.strokes[0]].clip(0, 1).tolist())
     return None

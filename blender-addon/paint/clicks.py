@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from ..blender import colours
+from ..blender import colours, fill_materials
 from ..blender import grease_pencil as gp
 from ..common import polygons
 from . import sheets, shapes
@@ -23,8 +25,8 @@ class Click:
 
     at: tuple[float, float]
     """Footage pixels."""
-    colour: tuple[float, float, float]
-    """sRGB from 0 to 1."""
+    colour: tuple[float, float, float] | None
+    """sRGB from 0 to 1. `None` says that the region stays without paint."""
     stroke: int
     """The stroke that it stands for, as an index in its drawing."""
 
@@ -34,13 +36,19 @@ def of(ob, sheet: sheets.Sheet, mapping, height: int) -> list[Click]:
     content = sheet.content
     own = sheets.shapes_of(ob, content, mapping, sheet.own)
     seen = colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1).round(6)
-    exact = content.strokes(gp.CLICK)
+    exact, bare = content.strokes(gp.CLICK), fill_materials.are_bare(ob, content)
     found = []
     for k, shape in enumerate(own):
         first = shape.strokes[0]
         places = _places(shape, own[k + 1 :], exact[first], height)
-        found += [Click((float(x), float(y)), tuple(seen[first].tolist()), first) for x, y in places]
+        colour = None if bare[first] else tuple(seen[first].tolist())
+        found += [Click((float(x), float(y)), colour, first) for x, y in places]
     return found
+
+
+def asked(own: Iterable[Click]) -> list[dict[str, Any]]:
+    """Clicks in the form of a document."""
+    return [{"at": list(click.at), "colour": None if click.colour is None else list(click.colour)} for click in own]
 
 
 def _places(shape: sheets.Shape, above: list[sheets.Shape], exact: np.ndarray, height: int) -> np.ndarray:

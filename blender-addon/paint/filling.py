@@ -54,6 +54,8 @@ class Done:
     """Scene frames with a shape of the artist whose region a later shape fills."""
     bare: set[int] = field(default_factory=set)
     """Scene frames with hardly any regions: their lines were probably not found."""
+    leaking: set[int] = field(default_factory=set)
+    """Scene frames with a shape of the artist whose region goes through a gap to the edge of the picture."""
 
 
 def worker(plan: pl.Plan, options: Options) -> jobs.Worker:
@@ -112,7 +114,8 @@ def _done(plan: pl.Plan, found: Filled) -> Done:
     for frame, index in [*found.missed, *found.overruled]:
         vain.setdefault(frame + plan.offset, set()).add(index)
     overruled = {(frame + plan.offset, index) for frame, index in found.overruled}
-    done = Done(unrelated={frame + plan.offset for frame in found.unrelated}, bare={frame + plan.offset for frame in found.bare})
+    leaking = {leak.frame + plan.offset for leak in found.leaking if not leak.parted}
+    done = Done(leaking=leaking, unrelated={frame + plan.offset for frame in found.unrelated}, bare={frame + plan.offset for frame in found.bare})
     for frame, indices in vain.items():
         # A shape with several clicks counts as soon as one of them paints.
         hit = {click.stroke for k, click in enumerate(plan.clicks[frame]) if k not in indices}

@@ -1,7 +1,7 @@
 """Clicks and regions that a document gives, as a layer with paint.
 
 A region in which a click has the region's colour is a shape of the artist; all others are generated. A click without a region is a small
-disc: Fill Drawings paints its region.
+disc: Fill Drawings paints its region, or leaves it without paint if the click has no colour.
 """
 
 from __future__ import annotations
@@ -68,8 +68,8 @@ def _content(region: painted.Region) -> tuple:
 
 def _clicked(click: Click, regions: list[painted.Region], height: int) -> painted.Region:
     """The region of a click, or a disc."""
-    place, colour = np.array([click.at]), np.array(click.colour)
-    for region in regions:
+    place, colour = np.array([click.at]), None if click.colour is None else np.array(click.colour)
+    for region in regions if colour is not None else ():
         if np.abs(region.colour - colour).max() < SAME and polygons.inside(region.loops, place)[0]:
             return region
     turn = 2 * np.pi * np.arange(12) / 12

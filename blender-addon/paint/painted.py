@@ -27,8 +27,8 @@ class Region:
     outline: np.ndarray
     """Footage pixels (N, 2)."""
     holes: list[np.ndarray]
-    colour: np.ndarray
-    """sRGB from 0 to 1."""
+    colour: np.ndarray | None
+    """sRGB from 0 to 1; `None` for no paint."""
     confidence: float = 1.0
 
     @property
@@ -51,13 +51,17 @@ class Palette:
 
     looks: dict[tuple[float, ...], tuple[int, np.ndarray]] = field(default_factory=dict)
 
-    def add(self, colour: tuple[float, ...], content: st.Content, stroke: int) -> None:
-        """Adds the look of a stroke of the artist. The first one of a colour counts."""
+    def add(self, colour: tuple[float, ...] | None, content: st.Content, stroke: int) -> None:
+        """Adds the look of a stroke of the artist. The first one of a colour counts. No paint has its own material."""
+        if colour is None:
+            return
         look = int(content.strokes("material_index")[stroke]), content.strokes("fill_color")[stroke].copy()
         self.looks.setdefault(tuple(colour), look)
 
-    def of(self, ob, colour: np.ndarray) -> tuple[int, np.ndarray]:
+    def of(self, ob, colour: np.ndarray | None) -> tuple[int, np.ndarray]:
         """Material and tint of a colour."""
+        if colour is None:
+            return fill_materials.nothing(ob), np.zeros(4, np.float32)
         for known, look in self.looks.items():
             if np.abs(np.array(known) - colour).max() <= fill_materials.SAME:
                 return look

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..blender import colours, footage, guard
+from ..blender import colours, fill_materials, footage, guard
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
@@ -80,7 +80,7 @@ def make(ob, name: str, first: int, last: int) -> Plan:
             _add(ob, plan, frame, sheet)
     if not plan.clicks:
         raise Problem(_why_nothing(name, drawn, low, high))
-    fills = [{"frame": frame - offset, "regions": _regions(own)} for frame, own in sorted(plan.clicks.items())]
+    fills = [{"frame": frame - offset, "regions": clicks.asked(own)} for frame, own in sorted(plan.clicks.items())]
     shown = footage.fields(ob, pattern)
     plan.document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
     if (first, last) != (low, high):
@@ -95,7 +95,8 @@ def _kept(ob, drawn: dict[int, sheets.Sheet], offset: int) -> list[dict[str, Any
     palette, found = colours.palette(ob), []
     for frame, sheet in sorted(drawn.items()):
         seen = colours.of_strokes(ob, sheet.content, palette).clip(0, 1).round(6).tolist()
-        numbers = dict(zip(sheet.content.strokes(gp.TRACK).tolist(), seen))
+        bare = fill_materials.are_bare(ob, sheet.content)
+        numbers = {number: own for number, own, no in zip(sheet.content.strokes(gp.TRACK).tolist(), seen, bare) if not no}
         regions = [{"outline": [], "colour": colour, "track": number - 1} for number, colour in numbers.items() if number > 0]
         found.append({"frame": frame - offset, "regions": regions})
     return found
@@ -107,10 +108,6 @@ def _add(ob, plan: Plan, frame: int, sheet: sheets.Sheet) -> None:
         plan.palette.add(click.colour, sheet.content, click.stroke)
     if found:
         plan.clicks[frame] = found
-
-
-def _regions(own: list[clicks.Click]) -> list[dict[str, Any]]:
-    return [{"at": list(click.at), "colour": list(click.colour)} for click in own]
 
 
 def _why_nothing(name: str, drawn: dict[int, sheets.Sheet], low: int, high: int) -> str:

@@ -20,6 +20,11 @@ class FillSettings:
         max=1.0,
         default=(0.93, 0.76, 0.62),
     )
+    fill_nothing: bpy.props.BoolProperty(
+        name="No Paint",
+        description="Paint Bucket says of a region that it stays without paint, on all drawings: paper that shows between a figure's limbs, or around it",
+        default=False,
+    )
     fill_confidence: bpy.props.FloatProperty(
         name="Least Confidence",
         description="Regions whose colour is less sure than this stay unpainted. At 0 all regions are painted",

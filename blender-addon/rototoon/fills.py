@@ -39,6 +39,23 @@ class Click(NamedTuple):
     """sRGB from 0 to 1. `None` says that the region stays without paint."""
 
 
+class Leak(NamedTuple):
+    """A click from which a gap in a line leads to the edge of the picture."""
+
+    frame: int
+    """The frame, as in the document."""
+    click: int
+    """Index of the click among those of the frame."""
+    parted: bool
+    """Whether the gap was closed. Otherwise the region goes through it, and is in doubt."""
+    gap: tuple[float, float]
+    """The place of the gap, in pixels."""
+    width: float
+    """How wide the gap is, in pixels."""
+    size: tuple[int, int]
+    """Width and height in pixels of what the click paints."""
+
+
 @dataclass(frozen=True)
 class Region:
     """A painted region on one frame."""
@@ -99,6 +116,8 @@ class Filled:
     frame. Only `Session.fill` fills it."""
     bare: list[int] = field(default_factory=list)
     """Frames with hardly any regions for what was clicked: their lines were probably not found. Only `Session.fill` fills it."""
+    leaking: list[Leak] = field(default_factory=list)
+    """Clicks from which a gap in a line leads to the edge of the picture. Only `Session.fill` fills it."""
 
     def on(self, frame: int) -> list[Region]:
         """The regions of a frame; later ones lie over earlier ones. There are none on a frame that was not painted."""

@@ -13,7 +13,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from .fills import Click, Filled, flat
+from .fills import Click, Filled, Leak, flat
 from .lines import Traced
 from .native import handles
 from .native.arrays import as_json, buffer, pair, text
@@ -230,7 +230,12 @@ class Session:
         report = json.loads(told)
         missed, overruled = ([(own["frame"], own["click"]) for own in report[name]] for name in ("missed", "overruled"))
         unrelated = [own["frame"] for own in report["frames"] if not own["related"]]
-        return Filled(*regions, missed, unrelated, overruled, [own["frame"] for own in report["frames"] if own["bare"]])
+        bare = [own["frame"] for own in report["frames"] if own["bare"]]
+        leaking = [
+            Leak(own["frame"], own["click"], own["parted"], tuple(own["gap"]), own["width"], tuple(own["size"]))
+            for own in report["leaking"]
+        ]
+        return Filled(*regions, missed, unrelated, overruled, bare, leaking)
 
     # -- results -------------------------------------------------------------------------------------------------
 

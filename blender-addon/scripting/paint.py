@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from rototoon.types import Progress
 
-from ..blender import colours, guard
+from ..blender import colours, fill_materials, guard
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common import jobs
@@ -63,20 +63,22 @@ class Painted:
 
 @told
 def fill_region(
-    ob: bpy.types.Object, frame: int, place: Sequence[float], colour: Sequence[float], *, sensitivity: float | None = None
+    ob: bpy.types.Object, frame: int, place: Sequence[float], colour: Sequence[float] | None, *, sensitivity: float | None = None
 ) -> int:
-    """Fills the region of the picture at a place (footage pixels) with a colour (sRGB, 0 to 1), as Paint Bucket.
+    """Fills the region of the picture at a place (footage pixels) with a colour (sRGB, 0 to 1), as Paint Bucket. The colour `None` says that
+    it stays without paint.
 
     Returns the scene frame of the drawing that was painted: an earlier one, if the frame holds its picture. `sensitivity` is 0.1 to 10;
     by default it is that of the panel.
     """
     need(ob, OnFootage)
-    (x, y), (red, green, blue) = place, colour
-    if not all(0 <= channel <= 1 for channel in (red, green, blue)):
-        raise Problem(f"colour: found {tuple(colour)}, expected three numbers from 0 to 1")
+    x, y = place
+    if colour is not None and not (len(colour) == 3 and all(0 <= channel <= 1 for channel in colour)):
+        raise Problem(f"colour: found {tuple(colour)}, expected three numbers from 0 to 1, or None for no paint")
     jobs.clear_the_way()
     chosen = ob.rototoon.line_sensitivity if sensitivity is None else sensitivity
-    return bucket.paint(ob, frame, (float(x), float(y)), (float(red), float(green), float(blue)), chosen).frame
+    paint = None if colour is None else tuple(float(channel) for channel in colour)
+    return bucket.paint(ob, frame, (float(x), float(y)), paint, chosen).frame
 
 
 @told
@@ -127,7 +129,7 @@ def _regions(ob: bpy.types.Object, sheet: sheets.Sheet, mapping) -> list[Region]
     content, found = sheet.content, []
     numbers, seen = content.strokes(gp.TRACK), colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1)
     sure = np.where(sheet.made, of_strokes(content.point.get(gp.CONFIDENCE), content.starts), 1.0)
-    for shape in sheets.shapes_of(ob, content, mapping, range(len(numbers))):
+    for shape in sheets.shapes_of(ob, content, mapping, np.flatnonzero(~fill_materials.are_bare(ob, content)).tolist()):
         first = shape.strokes[0]
         outline, *holes = sheets.loops_of(shape)
         colour = tuple(seen[first].tolist())

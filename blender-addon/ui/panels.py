@@ -284,7 +284,10 @@ class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False
-        column.prop(settings, "fill_colour")
+        colour = column.column()
+        colour.active = not settings.fill_nothing
+        colour.prop(settings, "fill_colour")
+        column.prop(settings, "fill_nothing")
         column.prop(settings, "fills_layer", text="Layer")
         # Beside a label of this length there is no room for it.
         layout.prop(settings, "fill_confidence")

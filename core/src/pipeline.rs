@@ -43,7 +43,7 @@ pub use conform::{Conformed, NewFootage, conform};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
-pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, MissedClick, fill};
+pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, fill};
 pub use gaps::without_file;
 pub use outdated::outdated;
 pub use paint::{Cels, undrawn};

@@ -113,6 +113,7 @@ class Painted:
     unrelated: list = field(default_factory=list)
     overruled: list = field(default_factory=list)
     bare: list = field(default_factory=list)
+    leaking: list = field(default_factory=list)
 
     def on(self, frame):
         """The regions of a frame."""

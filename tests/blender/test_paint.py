@@ -11,6 +11,7 @@ import pytest
 import stand_in
 from line_stage import film, pictures  # noqa: F401 - fixtures
 from line_stage import attribute, handle_of, kinds, opened, rendered, said
+from shots import write_png
 
 PAPER, SKIN, EYE, GREEN = (1.0, 1.0, 1.0), (0.93, 0.76, 0.62), (0.2, 0.4, 0.9), (0.1, 0.7, 0.2)
 LAYER = "Paint"
@@ -481,3 +482,66 @@ def test_a_shape_on_a_line_is_told(addon, clicked):
     assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
     assert "a shape of yours lies on a line: frame 1" in said(addon).text
     assert len(read(addon, clicked, 1).sizes) == 5
+
+
+def gapped(folder, rows):
+    """The film with a gap of some rows in the left side of the body. Returns its active object."""
+    first = ls.draw_sequence(folder)
+    for number, path in enumerate(sorted(folder.glob(f"*{first.suffix}"))):
+        picture = ls.picture(number).copy()
+        left = int((90 + 4 * number) * ls.SCALE)
+        picture[91 - rows // 2 : 91 + (rows + 1) // 2, left - 6 : left + 7] = ls.PAPER
+        write_png(path, picture)
+    return ls.set_up(first)
+
+
+def test_a_click_that_leaks_is_told_at_once(addon, library, tmp_path):
+    (_, (body, _), *_) = places(1)
+    for name, rows in (("narrow", 2), ("wide", 14)):
+        (tmp_path / name).mkdir()
+        ob = gapped(tmp_path / name, rows)
+        click(ob, body, SKIN)
+        told = said(addon)
+        assert told.kind == "WARNING" and "gap of about" in told.text, told.text
+        flooded = colour_at(addon, ob, 1, (8, 8)) is not None
+        assert flooded == (name == "wide")
+        assert ("up to the picture's edge" in told.text) == flooded, told.text
+        if flooded:
+            ob.rototoon.fill_nothing = True
+            assert bpy.ops.rototoon.paint_bucket(place=(8, 8)) == {"FINISHED"}
+            assert said(addon).text == "1 region stays without paint"
+            assert colour_at(addon, ob, 1, (8, 8)) == (), "a shape without paint parts it"
+            assert colour_at(addon, ob, 1, body) == pytest.approx(SKIN, abs=1e-3)
+
+
+def test_no_paint_is_said_carried_and_kept_in_documents(addon, clicked, tmp_path):
+    eye = places(1)[2][0]
+    clicked.rototoon.fill_nothing = True
+    assert bpy.ops.rototoon.paint_bucket(place=eye) == {"FINISHED"}
+    assert said(addon).text == "1 region stays without paint"
+    assert colour_at(addon, clicked, 1, eye) == ()
+    used = {clicked.data.materials[int(i)].name for i in read(addon, clicked, 1).strokes("material_index")}
+    assert "No Paint" in used and len(read(addon, clicked, 1).sizes) == 4
+    bpy.ops.rototoon.fill_drawings()
+    scripting = addon("scripting")
+
+    def bare(ob):
+        shown = {frame: len(regions) for frame, regions in scripting.regions(ob).items()}
+        return shown == dict.fromkeys(range(1, 7), 3) and all(not colour_at(addon, ob, f, places(f)[2][0]) for f in range(1, 7))
+
+    assert bare(clicked)
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert [each["colour"] for each in document["fills"][0]["regions"]].count(None) == 1
+    assert all(len(each["regions"]) == 3 for each in document["filled"])
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    other = bpy.context.object
+    assert other != clicked and bare(other)
+    bpy.ops.rototoon.fill_drawings()
+    assert bare(other), "the click came with the document"
+    again = tmp_path / "again.json"
+    bpy.ops.rototoon.export_document(filepath=str(again))
+    assert [each["colour"] for each in json.loads(again.read_text())["fills"][0]["regions"]].count(None) == 1
+    scripting.fill_region(other, 1, eye, EYE)
+    assert colour_at(addon, other, 1, eye) == pytest.approx(EYE, abs=1e-3), "it can be painted again"

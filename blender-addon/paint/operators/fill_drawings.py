@@ -36,6 +36,8 @@ class ROTOTOON_OT_fill_drawings(Framed, Sensitive, Long, OnFootage, bpy.types.Op
         if done.overruled:
             self.warn(f"no line was found between shapes of yours of other colours, so one of them fills both: {_named(done.overruled)}")
         self.warn(f"hardly any region was found: {_named(done.bare)}; a higher Sensitivity finds fainter lines" if done.bare else "")
+        if done.leaking:
+            self.warn(f"a shape of yours fills all up to the picture's edge through a gap in a line: {_named(done.leaking)}")
         self.warn(_doubts(done))
         return f"{counted(done.regions, 'region')} on {counted(len(done.frames), 'frame')}"
 

@@ -22,8 +22,8 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
     bl_idname = "rototoon.paint_bucket"
     bl_label = "Paint Bucket"
     bl_description = (
-        "Click into regions of the picture on the current frame to fill them with the colour of the panel. Ctrl-click a filled region to "
-        "take its colour. Fill Drawings carries the colours to the other frames"
+        "Click into regions of the picture on the current frame to fill them with the colour of the panel, or to say that they have no paint. "
+        "Ctrl-click a filled region to take its colour. Fill Drawings carries the colours to the other frames"
     )
     # Without REGISTER: repeating the operator with other settings would undo the artist's clicks.
     bl_options = {"UNDO"}
@@ -40,13 +40,16 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
     def _once(self, context):
         if min(self.place) < 0:
             raise Problem("place: found none, expected a pixel of the footage")
-        self._fill(context, tuple(self.place))
-        return self.done("1 region filled")
+        self.warn(self._fill(context, tuple(self.place)))
+        return self.done("1 region stays without paint" if context.object.rototoon.fill_nothing else "1 region filled")
 
-    def _fill(self, context, place: tuple[float, float]) -> None:
+    def _fill(self, context, place: tuple[float, float]) -> str:
+        """Fills a region, and returns what should be known of it at once."""
         ob = context.object
-        colour, sensitivity = tuple(ob.rototoon.fill_colour), ob.rototoon.line_sensitivity
-        self._stack = [*self._stack, bucket.paint(ob, context.scene.frame_current, place, colour, sensitivity)]
+        colour = None if ob.rototoon.fill_nothing else tuple(ob.rototoon.fill_colour)
+        done = bucket.paint(ob, context.scene.frame_current, place, colour, ob.rototoon.line_sensitivity)
+        self._stack = [*self._stack, done]
+        return done.told
 
     _stack: list[bucket.Before] = []
     _pushed: list[bucket.Before] = []
@@ -97,8 +100,7 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
             why = self.lacking(context.object, self.changes)
             if why:
                 raise Problem(why)
-            do()
-            self._tell(context)
+            self._tell(context, do() or "")
         except (Problem, RototoonError) as problem:
             context.workspace.status_text_set(f"{problem}.   {HELP}")
 
@@ -117,7 +119,7 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
             bucket.take_back(context.object, self._stack[-1])
             self._stack = self._stack[:-1]
 
-    def _clicked(self, context, event, region, view) -> None:
+    def _clicked(self, context, event, region, view) -> str:
         ob, frame = context.object, context.scene.frame_current
         at = event.mouse_x - region.x, event.mouse_y - region.y
         start = np.array(view3d_utils.region_2d_to_origin_3d(region, view, at))
@@ -126,12 +128,15 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
         if event.ctrl:
             taken = bucket.colour_at(ob, frame, place)
             if taken is not None:
+                ob.rototoon.fill_nothing = not taken
+            if taken:
                 ob.rototoon.fill_colour = taken
-        else:
-            self._fill(context, place)
+            return ""
+        return self._fill(context, place)
 
-    def _tell(self, context) -> None:
-        context.workspace.status_text_set(f"{counted(len(self._stack), 'region')} filled.   {HELP}")
+    def _tell(self, context, told: str = "") -> None:
+        told = f" {told[0].upper()}{told[1:]}." if told else ""
+        context.workspace.status_text_set(f"{counted(len(self._stack), 'region')} filled.{told}   {HELP}")
         windows.redraw_views()
 
     def cancel(self, context):

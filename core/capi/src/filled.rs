@@ -4,7 +4,7 @@ use crate::status::Failure;
 use crate::traced::{SENSITIVITY, colours, within};
 use rototoon::geometry::Point;
 use rototoon::lines::{Options, Style};
-use rototoon::pipeline::{DOUBT, FillOptions, FillReport, MissedClick};
+use rototoon::pipeline::{DOUBT, FillOptions, FillReport, LeakingClick, MissedClick};
 use rototoon::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion};
 use rototoon::scene::{Colour, FrameNumber};
 use serde::Deserialize;
@@ -117,7 +117,15 @@ pub fn report_to_json(report: &FillReport) -> String {
         clicks.iter().map(|own| json!({"frame": own.frame, "click": own.click})).collect()
     };
     let (missed, overruled) = (clicks(&report.missed), clicks(&report.overruled));
-    json!({"frames": frames.collect::<Value>(), "missed": missed, "overruled": overruled}).to_string()
+    let leaking: Value = report.leaking.iter().map(leak_to_json).collect();
+    json!({"frames": frames.collect::<Value>(), "missed": missed, "overruled": overruled, "leaking": leaking})
+        .to_string()
+}
+
+fn leak_to_json(leak: &LeakingClick) -> Value {
+    let LeakingClick { place, gap, size } = leak;
+    let at = gap.at.to_array();
+    json!({"frame": place.frame, "click": place.click, "parted": gap.closes, "gap": at, "width": gap.width, "size": size})
 }
 
 /// The JSON options of painting.
@@ -171,6 +179,7 @@ impl Asked {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon::fill::Gap;
     use rototoon::pipeline::FilledFrame;
 
     #[test]
@@ -242,6 +251,11 @@ mod tests {
         let told: Value = serde_json::from_str(&report_to_json(&report)).unwrap();
         let frame = json!({"frame": 2, "regions": 3, "doubtful": 1, "related": true, "bare": true});
         let clicks = [4, 5].map(|click| json!([{"frame": 2, "click": click}]));
-        assert_eq!(told, json!({"frames": [frame], "missed": clicks[0], "overruled": clicks[1]}));
+        assert_eq!(told, json!({"frames": [frame], "missed": clicks[0], "overruled": clicks[1], "leaking": []}));
+        let gap = Gap { at: Point::new(3.5, 2.0), width: 4.0, beyond: Point::ONE, closes: true };
+        let leaking = vec![LeakingClick { place: click(6)[0], gap, size: [20, 30] }];
+        let told: Value = serde_json::from_str(&report_to_json(&FillReport { leaking, ..report })).unwrap();
+        let leak = json!({"frame": 2, "click": 6, "parted": true, "gap": [3.5, 2.0], "width": 4.0, "size": [20, 30]});
+        assert_eq!(told["leaking"], json!([leak]));
     }
 }

@@ -75,7 +75,8 @@ pub unsafe extern "C" fn rototoon_session_fills(
 /// per core. Regions of frames outside of `frames` stay in the document. It is an error if there is no click.
 ///
 /// `filled` has the regions of all frames, as `rototoon_session_filled` gives them. `report` is JSON: `{"frames":
-/// [{"frame", "regions", "doubtful", "related", "bare"}], "missed": [{"frame", "click"}], "overruled": [{"frame", "click"}]}`.
+/// [{"frame", "regions", "doubtful", "related", "bare"}], "missed": [{"frame", "click"}], "overruled": [{"frame", "click"}], "leaking":
+/// [{"frame", "click", "parted", "gap", "width", "size"}]}`.
 ///
 /// - `frames` are the frames that were looked at. `doubtful` is the number of regions whose colour is probably wrong.
 ///   `related` is false if no painted drawing shows the same; such a frame stays unpainted. `bare` is true if the drawing has hardly any
@@ -83,6 +84,8 @@ pub unsafe extern "C" fn rototoon_session_fills(
 /// - `missed` are the clicks that lie on a line or outside of the picture, and so paint nothing. `click` is the index
 ///   among the clicks of its frame.
 /// - `overruled` are the clicks that paint nothing because a later click has given their region another colour.
+/// - `leaking` are the clicks from which a gap leads to the edge of the picture. `gap` is its place and `width` how wide it is, `size` are width and
+///   height of what the click paints, all in pixels. If `parted` is true, the gap was closed; otherwise the region is in doubt.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_fill(
     session: *const RototoonSession,

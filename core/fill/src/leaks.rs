@@ -19,7 +19,7 @@ use rototoon_lines::ink::distance;
 use std::collections::{BTreeMap, BinaryHeap};
 
 /// Half the width of the widest gap, in pixels at 540 lines: of any gap, and of one that parts what leaked.
-const GAP: f64 = 5.0;
+pub(crate) const GAP: f64 = 5.0;
 const WIDE: f64 = 10.0;
 /// Depth of a gap, as a share of that of the shallower end: of any gap, and of one that parts what leaked.
 const NARROW: f32 = 0.5;
@@ -129,7 +129,7 @@ fn deepest(depth: &Raster<f32>, seen: &Raster<u32>) -> BTreeMap<usize, Deep> {
 }
 
 /// For each cell the depth of the shallowest cell on the deepest way to it from a start; 0 where there is no way.
-fn levels(depth: &Raster<f32>, start: usize) -> Vec<f32> {
+pub(crate) fn levels(depth: &Raster<f32>, start: usize) -> Vec<f32> {
     let (width, height) = (depth.width(), depth.height());
     let mut levels = vec![0.0f32; width * height];
     // Depths are ordered by their bits, since they are positive.

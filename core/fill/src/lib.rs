@@ -12,6 +12,7 @@
 //! - [`shifts`]: where each place of a drawing is on another one, from the registration of both drawings' lines
 //!   ([`rototoon_lines::displaced`])
 //! - [`leaks`]: gaps in lines, which the painted drawing shows
+//! - [`outside`]: clicks that leak to the edge of the picture
 //! - [`piece`]: what a gap parts from a region, and whether it has leaked
 //! - [`meet`]: how well each region of one drawing meets each of another one
 //! - [`relax`]: who is who, by neighbours
@@ -71,6 +72,7 @@ pub mod layout;
 pub mod leaks;
 pub mod meet;
 pub mod outlines;
+pub mod outside;
 pub mod page;
 pub mod piece;
 pub mod regions;
@@ -81,4 +83,5 @@ pub mod thin;
 
 pub use carry::{Source, carry};
 pub use outlines::{Fill, fills};
+pub use outside::Gap;
 pub use page::{Click, Page, Paint};

@@ -1,8 +1,9 @@
 //! A drawing that is to be painted: its regions, its lines, and what is known about its colours.
 
 use crate::evidence::Evidence;
-use crate::layout::Layout;
+use crate::layout::{Layout, boxes};
 use crate::meet::Table;
+use crate::outside::{Gap, leak};
 use crate::regions::Regions;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
@@ -14,6 +15,8 @@ use std::sync::Arc;
 const SURE: f64 = 0.5;
 /// Least share of itself that paper keeps where a click is parted from it.
 const KEPT: f64 = 0.75;
+/// Confidence in the colour of a region that leaks to the edge of the picture through a wide gap.
+const LEAKING: f64 = 0.3;
 
 /// A drawing with its regions.
 pub struct Page {
@@ -147,6 +150,48 @@ impl Page {
             self.layout = Layout::new(&self.regions);
         }
         split
+    }
+
+    /// The clicks with a colour that leak to the edge of the picture, by their places, with their gaps. Regions are [split](Regions::split) at
+    /// gaps that [can be closed](Gap::closes). So paper that nobody clicked is not flooded.
+    pub fn part_from_outside(&mut self, clicks: &[Click]) -> Vec<(usize, Gap)> {
+        let outer = self.outer();
+        let mut within: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, click) in clicks.iter().enumerate() {
+            if let Some(region) = self.regions.at(click.at).filter(|region| outer.contains(region)) {
+                within.entry(region).or_default().push(k);
+            }
+        }
+        let mut found = Vec::new();
+        let mut split = false;
+        // Where a click without a colour lies, the region has no paint, and no click floods it.
+        for (region, own) in within.into_iter().filter(|(_, own)| own.iter().all(|&k| clicks[k].colour.is_some())) {
+            let places: Vec<Point> = own.iter().map(|&k| clicks[k].at).collect();
+            let Some(gap) = leak(&self.layout, region, &places) else { continue };
+            if gap.closes {
+                self.regions.split(region, &[vec![gap.beyond], places].concat());
+                split = true;
+            }
+            found.extend(own.into_iter().map(|k| (k, gap)));
+        }
+        if split {
+            self.layout = Layout::new(&self.regions);
+        }
+        found
+    }
+
+    /// Puts the region of a click that leaks in doubt: it is probably not what the artist meant.
+    pub fn doubt(&self, paint: &mut Paint, click: &Click) {
+        if let Some(region) = self.regions.at(click.at) {
+            paint.confidence[region] = LEAKING;
+        }
+    }
+
+    /// Width and height in pixels of the region at a place.
+    pub fn extent(&self, place: Point) -> Option<[usize; 2]> {
+        let region = self.regions.at(place)?;
+        let [left, top, right, bottom] = boxes(&self.regions.inside, self.regions.count)[region];
+        Some([right.saturating_sub(left), bottom.saturating_sub(top)])
     }
 
     /// The regions at the edge of the picture.

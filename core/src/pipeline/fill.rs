@@ -13,12 +13,12 @@
 mod tests;
 mod told;
 
-pub use told::{FillReport, FilledFrame, MissedClick};
+pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick};
 
 use super::holds::{Holds, Stretch};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
-use crate::fill::{Click, Page, Paint, Source, carry, fills};
+use crate::fill::{Click, Gap, Page, Paint, Source, carry, fills};
 use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
@@ -80,6 +80,7 @@ pub fn fill(
     let Painting { mut found, mut report, .. } = painting;
     report.missed.sort_by_key(|missed| (missed.entry, missed.click));
     report.overruled.sort_by_key(|missed| (missed.entry, missed.click));
+    report.leaking.sort_by_key(|leak| (leak.place.entry, leak.place.click));
     found.retain(|drawing| range.contains(&drawing.frame));
     let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
     keep_apart(&mut found, &kept);
@@ -172,6 +173,8 @@ struct InVain {
     missed: Vec<usize>,
     /// A later click fills their region.
     overruled: Vec<usize>,
+    /// They leak to the edge of the picture: each with its gap, and with the size of what it paints.
+    leaking: Vec<(usize, Gap, [usize; 2])>,
 }
 
 /// Painting at work.
@@ -259,11 +262,13 @@ impl Painting<'_> {
     fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, InVain), PipelineError> {
         let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
+        page.split(&own);
+        let gaps = page.part_from_outside(&own);
         let (mut paint, missed) = page.painted(&own, self.palette.len(), &mut self.next);
         if paint.clicked() >= WHOLE {
             page.leave_paper(&mut paint);
         }
-        let in_vain = InVain { missed, overruled: page.overruled(&paint, &own) };
+        let in_vain = InVain { missed, ..in_vain(&page, &mut paint, &own, gaps) };
         Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, in_vain))
     }
 
@@ -272,17 +277,19 @@ impl Painting<'_> {
         let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
+        let gaps = page.part_from_outside(&own);
         let numbers = self.next;
         let mut carried = carry(&known.sources(), &mut page, &mut self.next);
         if carried.as_ref().is_some_and(|paint| page.part_from_paper(paint, &own)) {
             self.next = numbers;
             carried = carry(&known.sources(), &mut page, &mut self.next);
         }
-        let (paint, missed) = match carried {
+        let (mut paint, missed) = match carried {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
-        self.miss(clicks, &InVain { missed, overruled: page.overruled(&paint, &own) });
+        let in_vain = InVain { missed, ..in_vain(&page, &mut paint, &own, gaps) };
+        self.miss(clicks, &in_vain);
         Ok(Painted { frame: clicks.1.frame, page: page.into(), paint })
     }
 
@@ -336,6 +343,8 @@ impl Painting<'_> {
         let one = |&click: &usize| MissedClick { frame, at: clicks.1.clicks[click].at, entry, click };
         self.report.missed.extend(in_vain.missed.iter().map(one));
         self.report.overruled.extend(in_vain.overruled.iter().map(one));
+        let leak = |&(click, gap, size): &(usize, Gap, [usize; 2])| LeakingClick { place: one(&click), gap, size };
+        self.report.leaking.extend(in_vain.leaking.iter().map(leak));
         self.report.clicks.insert(frame, clicks.1.clicks.len());
     }
 
@@ -356,6 +365,17 @@ impl Painting<'_> {
         let (related, found) = (true, painted.page.regions());
         self.report.frames.push(FilledFrame { frame, regions: regions.len(), doubtful, related, found, bare: false });
         self.found.push(FilledDrawing { frame, regions });
+    }
+}
+
+/// What became of clicks into a page. Regions that leak through a gap that cannot be closed are put in doubt.
+fn in_vain(page: &Page, paint: &mut Paint, own: &[Click], gaps: Vec<(usize, Gap)>) -> InVain {
+    gaps.iter().filter(|(_, gap)| !gap.closes).for_each(|&(k, _)| page.doubt(paint, &own[k]));
+    let sized = |(k, gap): (usize, Gap)| Some((k, gap, page.extent(own[k].at)?));
+    InVain {
+        missed: Vec::new(),
+        overruled: page.overruled(paint, own),
+        leaking: gaps.into_iter().filter_map(sized).collect(),
     }
 }
 

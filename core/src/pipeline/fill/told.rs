@@ -1,6 +1,7 @@
 //! What painting tells: how many regions, which are in doubt, and what was in vain.
 
 use super::super::report::runs;
+use crate::fill::Gap;
 use crate::geometry::Point;
 use crate::scene::FrameNumber;
 use std::collections::BTreeMap;
@@ -49,6 +50,33 @@ impl fmt::Display for MissedClick {
     }
 }
 
+/// A click that leaks to the edge of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeakingClick {
+    /// The click.
+    pub place: MissedClick,
+    /// The gap. If it closes, the click paints what is on its own side.
+    pub gap: Gap,
+    /// Width and height in pixels of what the click paints.
+    pub size: [usize; 2],
+}
+
+impl fmt::Display for LeakingClick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { place: MissedClick { frame, at, .. }, gap, size: [width, height] } = self;
+        write!(f, "frame {frame}: the click at ({:.0}, {:.0}) ", at.x, at.y)?;
+        let hole = format!("a gap of about {:.0} px at ({:.0}, {:.0})", gap.width.max(1.0), gap.at.x, gap.at.y);
+        match gap.closes {
+            true => write!(f, "was parted from what is around at {hole}: it paints {width} × {height} px"),
+            false => write!(
+                f,
+                "paints {width} × {height} px up to the picture's edge, through {hole}: close the line, click into what is around, \
+                 or leave it if you mean all of it"
+            ),
+        }
+    }
+}
+
 /// What became of all frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
@@ -58,6 +86,8 @@ pub struct FillReport {
     pub missed: Vec<MissedClick>,
     /// Clicks in a region that a later click has given another colour.
     pub overruled: Vec<MissedClick>,
+    /// Clicks that leak to the edge of the picture.
+    pub leaking: Vec<LeakingClick>,
     /// By frame the number of its clicks.
     pub clicks: BTreeMap<FrameNumber, usize>,
 }
@@ -80,6 +110,7 @@ impl FillReport {
         if !other.is_empty() {
             lines.push(format!("not painted, since no painted drawing shows the same: frame {}", named(other)));
         }
+        lines.extend(self.leaking.iter().map(ToString::to_string));
         lines.extend(self.overruled_lines());
         let bare: Vec<FrameNumber> = self.frames.iter().filter(|f| f.bare).map(|f| f.frame).collect();
         if !bare.is_empty() {
