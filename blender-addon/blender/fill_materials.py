@@ -1,4 +1,7 @@
-"""Materials of paint: one for each colour, named by it. To change the material's fill changes the colour on all frames."""
+"""Materials of paint: one for each colour, named by it. To change the material's fill changes the colour on all frames.
+
+A colour of paint is its material: its name says which colour it is, and its fill how it looks. Two materials of one look stay two colours.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,8 @@ from .line_materials import encoded, to_linear
 
 NAME = "Paint "
 """Beginning of the names. The colour as hexadecimal digits follows."""
+OWN = "rototoon_paint"
+"""Property of materials that were made here. They stay so under another name."""
 NOTHING = "No Paint"
 """Name of the material of shapes whose region stays without paint. Its fill is transparent, and so is that of each such material."""
 SAME = 0.6 / 255
@@ -27,6 +32,39 @@ def material(ob: bpy.types.Object, colour: np.ndarray) -> int:
     return _make(ob, colour)
 
 
+def names_of(ob: bpy.types.Object) -> list[str | None]:
+    """The names of the object's materials: of the colours of paint."""
+    return [material.name if material is not None and material.grease_pencil is not None else None for material in ob.data.materials]
+
+
+def names_of_strokes(ob: bpy.types.Object, content) -> list[str | None]:
+    """For each stroke the name of its colour, that of its material. A tint makes another colour of it, which has no name."""
+    names = names_of(ob) or [None]
+    index = np.clip(content.strokes("material_index"), 0, len(names) - 1)
+    return [names[i] if tint <= 0 else None for i, tint in zip(index, content.strokes("fill_color")[:, 3])]
+
+
+def named(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
+    """Index of the object's material for a colour with a name. A material of that name is taken where its look agrees, or it was made here:
+    then the artist has changed its look since. Otherwise one is made."""
+    for place, own in enumerate(ob.data.materials):
+        if own is not None and own.name == name and _serves(own, colour):
+            return place
+    other = bpy.data.materials.get(name)
+    if other is not None and _serves(other, colour):
+        ob.data.materials.append(other)
+        return len(ob.data.materials) - 1
+    return _append(ob, name, colour)
+
+
+def _serves(material: bpy.types.Material, colour: np.ndarray) -> bool:
+    style = material.grease_pencil
+    if style is None or not _fills(style) or style.fill_color[3] <= 0.0:
+        return False
+    same = np.abs(encoded(np.array(style.fill_color[:3], np.float64)) - colour).max() <= SAME
+    return bool(same or material.get(OWN) or material.name.startswith(NAME))
+
+
 def nothing(ob: bpy.types.Object) -> int:
     """Index of the object's material of shapes whose region stays without paint. It is made if there is none."""
     for place, bare in enumerate(bare_of(ob)):
@@ -36,6 +74,12 @@ def nothing(ob: bpy.types.Object) -> int:
     style = ob.data.materials[place].grease_pencil
     style.color = style.fill_color = (1.0, 1.0, 1.0, 0.0)
     return place
+
+
+def is_paint(name: str) -> bool:
+    """Whether a material was made here."""
+    material = bpy.data.materials.get(name)
+    return name.startswith(NAME) or bool(material is not None and material.get(OWN))
 
 
 def bare_of(ob: bpy.types.Object) -> np.ndarray:
@@ -64,6 +108,7 @@ def _make(ob: bpy.types.Object, colour: np.ndarray) -> int:
 
 def _append(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
     made = bpy.data.materials.new(name)
+    made[OWN] = True
     bpy.data.materials.create_gpencil_data(made)
     style = made.grease_pencil
     style.color = style.fill_color = (*to_linear(np.asarray(colour, np.float64)), 1.0)

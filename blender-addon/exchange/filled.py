@@ -30,7 +30,7 @@ def read(project: dict[str, Any]) -> tuple[dict[int, list[Click]], dict[int, lis
         return {}, {}
     try:
         # The pictures are not read, and only these fields are looked at.
-        own = {name: project[name] for name in ("rototoon", "footage", "fills", "filled") if name in project}
+        own = {name: project[name] for name in ("rototoon", "footage", "palette", "fills", "filled") if name in project}
         with Session.from_document({**own, "parts": []}, ".") as session:
             fills, filled = session.fills(), session.filled()
     except RototoonError as error:
@@ -81,6 +81,11 @@ def of(ob) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     return fills, [{"frame": frame - offset, "regions": regions} for frame, regions in sorted(shown.items())]
 
 
+def palette(fills: list[dict[str, Any]], filled: list[dict[str, Any]]) -> dict[str, list[float]]:
+    """The look of each named colour of clicks and regions."""
+    return {each["name"]: each["colour"] for own in [*filled, *fills] for each in own["regions"] if "name" in each}
+
+
 def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dict[str, Any]]:
     """The shapes of a drawing. One without a number gets a fresh one. Of several with one number the largest counts."""
     content = sheet.content
@@ -88,7 +93,7 @@ def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dic
     seen = colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1).round(6)
     sure = np.where(sheet.made, doubts.of_strokes(content.point.get(gp.CONFIDENCE), content.starts), 1.0).round(3)
     found: dict[int, tuple[float, dict[str, Any]]] = {}
-    bare = fill_materials.are_bare(ob, content)
+    bare, names = fill_materials.are_bare(ob, content), fill_materials.names_of_strokes(ob, content)
     for shape in sheets.shapes_of(ob, content, mapping, np.flatnonzero(~bare).tolist()):
         first = shape.strokes[0]
         number, (outline, *others) = int(numbers[first]) or next(fresh), sheets.loops_of(shape)
@@ -100,6 +105,8 @@ def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dic
         if holes:
             region["holes"] = holes
         found.pop(number, None)
+        if names[first] is not None:
+            region["name"] = names[first]
         region |= {"colour": seen[first].tolist(), "track": number - 1, "confidence": float(sure[first])}
         found[number] = size, region
     return [region for _, region in found.values()]

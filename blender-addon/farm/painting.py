@@ -53,7 +53,7 @@ def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:
 
 
 def _filled(result: Mapping[str, Any]) -> Filled:
-    own = {name: result[name] for name in ("rototoon", "footage", "fills", "filled") if name in result}
+    own = {name: result[name] for name in ("rototoon", "footage", "palette", "fills", "filled") if name in result}
     try:
         # The pictures are not read, and only these fields are looked at.
         with Session.from_document({**own, "parts": []}, ".") as session:
@@ -74,5 +74,7 @@ def _alike(one: Sequence[Mapping[str, Any]], other: Sequence[Mapping[str, Any]])
         # No paint is no colour.
         return [*click["at"], *(click["colour"] or [-1.0] * 3)]
 
+    if [click.get("name") for click in one] != [click.get("name") for click in other]:
+        return False
     rows = [np.array([row(click) for click in clicks], np.float64) for clicks in (one, other)]
     return rows[0].shape == rows[1].shape and bool((np.abs(rows[0] - rows[1]) <= SAME).all())

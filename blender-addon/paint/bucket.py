@@ -18,6 +18,7 @@ from ..blender import camera, colours, fill_materials, footage, guard
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..blender.errors import Problem
+from ..blender.line_materials import encoded
 from ..common import polygons
 from ..lines import plan as lines_plan
 from ..lines import properties
@@ -57,13 +58,27 @@ def paint(ob, frame: int, place: tuple[float, float], colour: tuple[float, ...] 
     sheet = drawn.get(frame) or sheets.Sheet(st.of_rows(painted.rows(ob, [], mapping, painted.Palette())), np.zeros(0, bool), gp.KEYFRAME)
     own = clicks.of(ob, sheet, mapping, ob.rototoon.height)
     chosen = None if colour is None else tuple(np.round(colour, 6).tolist())
-    new = clicks.Click((float(place[0]), float(place[1])), chosen, -1)
+    new = clicks.Click((float(place[0]), float(place[1])), chosen, -1, _name(ob, own, chosen))
     regions, leak = _regions(ob, pattern, frame, [*own, new], sensitivity)
     if _at(regions, new.at) is None:
         raise Problem("There is a line here, or no picture: click inside of a region")
     _write(ob, name, frame, sheet, mapping, regions, own, new)
     after = sheets.read(ob, name)[frame].sum()
     return Before(frame, sheet.content if frame in drawn else None, sheet.kind, after, _told(leak))
+
+
+def _name(ob, own: list[clicks.Click], colour: tuple[float, ...] | None) -> str | None:
+    """The name of the colour of a new click: the one that was taken last, that of an earlier click, or that of the object's material."""
+    if colour is None:
+        return None
+    names, looks = fill_materials.names_of(ob), colours.palette(ob)[:, 1, :3]
+    alike = np.abs(encoded(looks) - colour).max(1) <= fill_materials.SAME
+    found = [name for name, same in zip(names, alike) if same and name is not None]
+    if ob.rototoon.fill_name in found:
+        return ob.rototoon.fill_name
+    # The artist may have made another material of this colour: it is no colour of paint yet.
+    used = (click.name for click in own if click.name in found)
+    return next(used, None) or next((name for name in found if fill_materials.is_paint(name)), None)
 
 
 def take_back(ob, before: Before) -> None:
@@ -141,7 +156,7 @@ def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own
     asked = [*again, new]
     palette = painted.Palette()
     for click in own:
-        palette.add(click.colour, sheet.content, click.stroke)
+        palette.add(click, sheet.content)
     drawn = [_own_region(_at(regions, click.at), click) for click in asked]
     rows = painted.rows(ob, drawn, mapping, palette, rest.strokes("fill_id").tolist())
     rows.values[gp.MADE] = np.zeros(len(asked), bool)
@@ -159,7 +174,7 @@ def _write(ob, name: str, frame: int, sheet: sheets.Sheet, mapping, regions, own
 
 def _own_region(region: painted.Region, click: clicks.Click) -> painted.Region:
     colour = None if click.colour is None else np.array(click.colour)
-    return painted.Region(region.number, region.outline, region.holes, colour)
+    return painted.Region(region.number, region.outline, region.holes, colour, name=click.name)
 
 
 def _is_buckets(content: st.Content, stroke: int) -> bool:
@@ -198,6 +213,12 @@ def pixel_of(ob, frame: int, start: np.ndarray, way: np.ndarray) -> tuple[float,
 def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] | None:
     """The colour of the paint at a place (footage pixels) on a frame; `None` if there is none, and an empty one if a shape says that none is
     wanted."""
+    found = taken_at(ob, frame, place)
+    return None if found is None else found[0]
+
+
+def taken_at(ob, frame: int, place: tuple[float, float]) -> tuple[tuple[float, ...], str] | None:
+    """The same with the name of the colour, which may be empty."""
     name = ob.rototoon.fills_layer
     drawn = sheets.read(ob, name)
     shown = max((each for each in drawn if each <= frame), default=None)
@@ -205,8 +226,10 @@ def colour_at(ob, frame: int, place: tuple[float, float]) -> tuple[float, ...] |
         return None
     content = drawn[shown].content
     mapping = pl.mapper_of(ob, name, drawn, [frame]).at(0, frame)
+    names = fill_materials.names_of_strokes(ob, content)
     seen, bare = colours.of_strokes(ob, content, colours.palette(ob)), fill_materials.are_bare(ob, content)
     for shape in reversed(sheets.shapes_of(ob, content, mapping, range(len(content.sizes)))):
         if polygons.inside(shape.loops, np.array([place], np.float64))[0]:
-            return () if bare[shape.strokes[0]] else tuple(seen[shape.strokes[0]].clip(0, 1).tolist())
+            first = shape.strokes[0]
+            return ((), "") if bare[first] else (tuple(seen[first].clip(0, 1).tolist()), names[first] or "")
     return None

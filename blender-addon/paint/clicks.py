@@ -29,6 +29,8 @@ class Click:
     """sRGB from 0 to 1. `None` says that the region stays without paint."""
     stroke: int
     """The stroke that it stands for, as an index in its drawing."""
+    name: str | None = None
+    """The name of its colour: that of its material."""
 
 
 def of(ob, sheet: sheets.Sheet, mapping, height: int) -> list[Click]:
@@ -36,19 +38,25 @@ def of(ob, sheet: sheets.Sheet, mapping, height: int) -> list[Click]:
     content = sheet.content
     own = sheets.shapes_of(ob, content, mapping, sheet.own)
     seen = colours.of_strokes(ob, content, colours.palette(ob)).clip(0, 1).round(6)
+    names = fill_materials.names_of_strokes(ob, content)
     exact, bare = content.strokes(gp.CLICK), fill_materials.are_bare(ob, content)
     found = []
     for k, shape in enumerate(own):
         first = shape.strokes[0]
         places = _places(shape, own[k + 1 :], exact[first], height)
-        colour = None if bare[first] else tuple(seen[first].tolist())
-        found += [Click((float(x), float(y)), colour, first) for x, y in places]
+        colour, name = (None, None) if bare[first] else (tuple(seen[first].tolist()), names[first])
+        found += [Click((float(x), float(y)), colour, first, name) for x, y in places]
     return found
 
 
 def asked(own: Iterable[Click]) -> list[dict[str, Any]]:
     """Clicks in the form of a document."""
-    return [{"at": list(click.at), "colour": None if click.colour is None else list(click.colour)} for click in own]
+    found = []
+    for click in own:
+        found.append({"at": list(click.at), "colour": None if click.colour is None else list(click.colour)})
+        if click.name is not None:
+            found[-1]["name"] = click.name
+    return found
 
 
 def _places(shape: sheets.Shape, above: list[sheets.Shape], exact: np.ndarray, height: int) -> np.ndarray:

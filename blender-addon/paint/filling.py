@@ -133,7 +133,7 @@ def regions_on(found: Filled, frame: int) -> list[painted.Region]:
     for each in found.on(frame):
         holes = [np.asarray(hole) for hole in each.holes]
         outline, colour = np.asarray(each.outline), np.array(each.colour)
-        regions.append(painted.Region(each.track + 1, outline, holes, colour, each.confidence))
+        regions.append(painted.Region(each.track + 1, outline, holes, colour, each.confidence, each.name))
     return regions
 
 
@@ -154,7 +154,7 @@ def repeats(found: Filled) -> set[int]:
     """The pictures that have the regions of the picture before, to the last digit: the library found that they show the same drawing."""
 
     def regions(number: int) -> list[tuple]:
-        return [(each.track, each.colour, *(loop.tobytes() for loop in (each.outline, *each.holes))) for each in found.on(number)]
+        return [(each.track, each.colour, each.name, *(loop.tobytes() for loop in (each.outline, *each.holes))) for each in found.on(number)]
 
     numbers = found.frames.tolist()
     return {now for before, now in zip(numbers, numbers[1:]) if now == before + 1 and regions(before) == regions(now)}

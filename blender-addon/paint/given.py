@@ -70,10 +70,11 @@ def _clicked(click: Click, regions: list[painted.Region], height: int) -> painte
     """The region of a click, or a disc."""
     place, colour = np.array([click.at]), None if click.colour is None else np.array(click.colour)
     for region in regions if colour is not None else ():
-        if np.abs(region.colour - colour).max() < SAME and polygons.inside(region.loops, place)[0]:
+        same = region.name == click.name if click.name else np.abs(region.colour - colour).max() < SAME
+        if same and polygons.inside(region.loops, place)[0]:
             return region
     turn = 2 * np.pi * np.arange(12) / 12
-    return painted.Region(0, place + DISC * height * np.stack([np.cos(turn), np.sin(turn)], 1), [], colour)
+    return painted.Region(0, place + DISC * height * np.stack([np.cos(turn), np.sin(turn)], 1), [], colour, name=click.name)
 
 
 SAME = 1e-4

@@ -12,7 +12,7 @@ from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..common import polygons
 from ..lines import drawings as dr
-from . import sheets, shapes
+from . import clicks, sheets, shapes
 
 COVERED = 0.9
 """Share of a region that the artist's own shapes must cover so that it is not painted once more below them."""
@@ -30,6 +30,8 @@ class Region:
     colour: np.ndarray | None
     """sRGB from 0 to 1; `None` for no paint."""
     confidence: float = 1.0
+    name: str | None = None
+    """The name of its colour."""
 
     @property
     def loops(self) -> list[np.ndarray]:
@@ -47,23 +49,29 @@ class Region:
 
 @dataclass
 class Palette:
-    """The material and the tint of each colour: those of the artist's shapes. Other colours get materials of their own."""
+    """The material and the tint of each colour: those of the artist's shapes. Other colours get materials of their own. Colours with a name are told
+    apart by it, others by their look."""
 
-    looks: dict[tuple[float, ...], tuple[int, np.ndarray]] = field(default_factory=dict)
+    looks: dict[tuple[float, ...] | str, tuple[int, np.ndarray]] = field(default_factory=dict)
 
-    def add(self, colour: tuple[float, ...] | None, content: st.Content, stroke: int) -> None:
+    def add(self, click: clicks.Click, content: st.Content) -> None:
         """Adds the look of a stroke of the artist. The first one of a colour counts. No paint has its own material."""
-        if colour is None:
+        if click.colour is None:
             return
-        look = int(content.strokes("material_index")[stroke]), content.strokes("fill_color")[stroke].copy()
-        self.looks.setdefault(tuple(colour), look)
+        look = int(content.strokes("material_index")[click.stroke]), content.strokes("fill_color")[click.stroke].copy()
+        self.looks.setdefault(click.name or tuple(click.colour), look)
 
-    def of(self, ob, colour: np.ndarray | None) -> tuple[int, np.ndarray]:
-        """Material and tint of a colour."""
+    def of(self, ob, region: Region) -> tuple[int, np.ndarray]:
+        """Material and tint of a region."""
+        colour, name = region.colour, region.name
         if colour is None:
             return fill_materials.nothing(ob), np.zeros(4, np.float32)
+        if name is not None:
+            if name not in self.looks:
+                self.looks[name] = fill_materials.named(ob, name, colour), np.zeros(4, np.float32)
+            return self.looks[name]
         for known, look in self.looks.items():
-            if np.abs(np.array(known) - colour).max() <= fill_materials.SAME:
+            if not isinstance(known, str) and np.abs(np.array(known) - colour).max() <= fill_materials.SAME:
                 return look
         look = fill_materials.material(ob, colour), np.zeros(4, np.float32)
         self.looks[tuple(np.round(colour, 6).tolist())] = look
@@ -83,7 +91,7 @@ def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[i
     found.values[gp.CLICK] = gp.blank(gp.CLICK, count)
     found.values[gp.TRACK] = np.array([region.number for region in regions], np.int32)
     found.values[gp.CONFIDENCE] = np.repeat(np.array([region.confidence for region in regions], np.float32), found.sizes)
-    looks = [palette.of(ob, region.colour) for region in regions]
+    looks = [palette.of(ob, region) for region in regions]
     found.values["material_index"] = np.array([material for material, _ in looks], np.int32)
     found.values["fill_color"] = np.array([tint for _, tint in looks], np.float32).reshape(count, 4)
     if gp.FILL_BY_ID:

@@ -96,8 +96,10 @@ def _kept(ob, drawn: dict[int, sheets.Sheet], offset: int) -> list[dict[str, Any
     for frame, sheet in sorted(drawn.items()):
         seen = colours.of_strokes(ob, sheet.content, palette).clip(0, 1).round(6).tolist()
         bare = fill_materials.are_bare(ob, sheet.content)
-        numbers = {number: own for number, own, no in zip(sheet.content.strokes(gp.TRACK).tolist(), seen, bare) if not no}
-        regions = [{"outline": [], "colour": colour, "track": number - 1} for number, colour in numbers.items() if number > 0]
+        names = fill_materials.names_of_strokes(ob, sheet.content)
+        rows = zip(sheet.content.strokes(gp.TRACK).tolist(), seen, names, bare)
+        numbers = {number: {"colour": colour} | ({"name": name} if name else {}) for number, colour, name, no in rows if not no}
+        regions = [{"outline": [], "track": number - 1, **own} for number, own in numbers.items() if number > 0]
         found.append({"frame": frame - offset, "regions": regions})
     return found
 
@@ -105,7 +107,7 @@ def _kept(ob, drawn: dict[int, sheets.Sheet], offset: int) -> list[dict[str, Any
 def _add(ob, plan: Plan, frame: int, sheet: sheets.Sheet) -> None:
     found = clicks.of(ob, sheet, plan.mapper.at(0, frame), ob.rototoon.height)
     for click in found:
-        plan.palette.add(click.colour, sheet.content, click.stroke)
+        plan.palette.add(click, sheet.content)
     if found:
         plan.clicks[frame] = found
 

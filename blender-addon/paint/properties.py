@@ -20,6 +20,8 @@ class FillSettings:
         max=1.0,
         default=(0.93, 0.76, 0.62),
     )
+    fill_name: bpy.props.StringProperty(default="")
+    """The name of the material that Ctrl-click has taken. It counts as long as its look is that of the colour."""
     fill_nothing: bpy.props.BoolProperty(
         name="No Paint",
         description="Paint Bucket says of a region that it stays without paint, on all drawings: paper that shows between a figure's limbs, or around it",

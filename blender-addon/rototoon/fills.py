@@ -17,10 +17,11 @@ Coordinates are pixels, colours sRGB from 0 to 1. `Filled` has flat arrays for N
 from __future__ import annotations
 
 import array
+import json
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .native.errors import RototoonError
 
@@ -37,6 +38,8 @@ class Click(NamedTuple):
     """The place in the region, in pixels."""
     colour: tuple[float, float, float] | None
     """sRGB from 0 to 1. `None` says that the region stays without paint."""
+    name: str | None = None
+    """The name of the colour. Two names stay two colours, even if they look the same."""
 
 
 class Leak(NamedTuple):
@@ -72,6 +75,8 @@ class Region:
     """The probability, 0 to 1, that the colour is right. It is 1 where a painter clicked."""
     doubtful: bool
     """Whether the colour is probably wrong."""
+    name: str | None = None
+    """The name of its colour."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +111,8 @@ class Filled:
     """int32 (K + 1,): outline `k` has the points `point_offsets[k]` to `point_offsets[k + 1]`."""
     points: memoryview
     """float64 (P, 2), pixels."""
+    names: list[str | None] = field(default_factory=list)
+    """The names of the regions' colours."""
     missed: list[tuple[int, int]] = field(default_factory=list)
     """Clicks that lie on a line or outside of the picture, and so paint nothing: frame, and index among the clicks of that frame. Only
     `Session.fill` fills it."""
@@ -140,7 +147,7 @@ class Filled:
         first, last = self.outline_offsets[i], self.outline_offsets[i + 1]
         outline, *holes = [self._outline(k) for k in range(first, last)]
         red, green, blue = (self.colours[i, channel] for channel in range(3))
-        return Region(self.tracks[i], outline, holes, (red, green, blue), self.confidence[i], bool(self.doubtful[i]))
+        return Region(self.tracks[i], outline, holes, (red, green, blue), self.confidence[i], bool(self.doubtful[i]), self.names[i])
 
     def _outline(self, k: int) -> memoryview:
         first, last = self.point_offsets[k], self.point_offsets[k + 1]
@@ -149,12 +156,21 @@ class Filled:
         return flat.cast("d", (last - first, 2)) if last > first else flat.cast("d")
 
 
+def as_json(clicks: Iterable[Click]) -> str:
+    """Clicks in the form of a document."""
+    found: dict[int, list[dict[str, Any]]] = {}
+    for click in clicks:
+        own: dict[str, Any] = {"at": list(click.at), "colour": None if click.colour is None else list(click.colour)}
+        found.setdefault(click.frame, []).append(own | ({} if click.name is None else {"name": click.name}))
+    return json.dumps([{"frame": frame, "regions": found[frame]} for frame in sorted(found)])
+
+
 def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float], array.array[float]]:
     """The frames, places and colours of clicks, as flat arrays."""
     frames, places, colours = array.array("i"), array.array("d"), array.array("d")
     for k, click in enumerate(clicks):
         try:
-            frame, (x, y), colour = click
+            frame, (x, y), colour, *_ = click
             red, green, blue = (math.nan,) * 3 if colour is None else colour
             frames.append(frame)
             places.extend((x, y))

@@ -13,6 +13,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from . import fills
 from .fills import Click, Filled, Leak, flat
 from .lines import Traced
 from .native import handles
@@ -128,10 +129,14 @@ class Session:
         """The clicks of the painter, by frame."""
         fills = json.loads(self._handle.give(handles.Text, "rototoon_session_fills"))
         clicks = [(own["frame"], each) for own in fills for each in own["regions"]]
-        return [Click(frame, (*own["at"],), own["colour"] and (*own["colour"],)) for frame, own in clicks]
+        return [Click(frame, (*own["at"],), own["colour"] and (*own["colour"],), own.get("name")) for frame, own in clicks]
 
     def set_fills(self, clicks: Iterable[Click]) -> None:
         """Replaces the clicks of the painter. Those of a frame keep their order. Painted regions stay until the next `fill`."""
+        clicks = list(clicks)
+        if any(isinstance(click, Click) and click.name is not None for click in clicks):
+            self._handle.call("rototoon_session_set_fills_json", *text(fills.as_json(clicks)))
+            return
         frames, places, colours = flat(clicks)
         arrays = buffer(frames, "i")[0], buffer(places, "d")[0], buffer(colours, "d")[0]
         self._handle.call("rototoon_session_set_fills", *arrays, len(frames))

@@ -100,6 +100,7 @@ class Region:
     colour: tuple
     confidence: float
     doubtful: bool
+    name: str | None = None
 
 
 @dataclass

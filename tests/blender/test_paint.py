@@ -545,3 +545,53 @@ def test_no_paint_is_said_carried_and_kept_in_documents(addon, clicked, tmp_path
     assert [each["colour"] for each in json.loads(again.read_text())["fills"][0]["regions"]].count(None) == 1
     scripting.fill_region(other, 1, eye, EYE)
     assert colour_at(addon, other, 1, eye) == pytest.approx(EYE, abs=1e-3), "it can be painted again"
+
+
+def by_material(addon, ob):
+    """The number of filled regions by the name of their material, on all frames."""
+    index = [i for frame in kinds(addon, ob, LAYER) for i in attribute(addon, ob, LAYER, frame, "material_index").tolist()]
+    return {ob.data.materials[i].name: index.count(i) for i in sorted(set(index))}
+
+
+def test_a_colour_is_its_material_and_not_its_look(addon, painted):
+    body, eye = (painted.data.materials[name] for name in ("Paint edc29e", "Paint 3366e6"))
+    body.name, eye.name = "Mantel", "Auge"
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}
+    # A night palette: both look the same.
+    body.grease_pencil.fill_color = eye.grease_pencil.fill_color
+    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}, "they stay two colours"
+    # The bucket takes a material, and not the first one that looks like it.
+    scripting, bucket = addon("scripting"), addon("paint.bucket")
+    place = places(1)[1][0]
+    taken, painted.rototoon.fill_name = bucket.taken_at(painted, 1, place)
+    assert painted.rototoon.fill_name == "Mantel"
+    scripting.fill_region(painted, 1, place, taken)
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}
+
+
+def test_colours_keep_their_materials_in_documents(addon, painted, tmp_path):
+    painted.data.materials["Paint edc29e"].name = "Mantel"
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert sorted(document["palette"]) == ["Mantel", "Paint 3366e6", "Paint ffffff"]
+    assert {each["name"] for each in document["filled"][3]["regions"]} == set(document["palette"])
+    count = len(bpy.data.materials)
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    other = bpy.context.object
+    assert by_material(addon, other) == by_material(addon, painted)
+    added = set(bpy.data.materials[count:]) if len(bpy.data.materials) > count else set()
+    assert not any(own.name.startswith(("Mantel.", "Paint")) for own in added), "one change of colour reaches both objects"
+    # A material of somebody else that looks otherwise is no colour of this paint.
+    stranger = bpy.data.materials.new("Fremd")
+    bpy.data.materials.create_gpencil_data(stranger)
+    stranger.grease_pencil.fill_color = (0, 0, 0, 1)
+    for own in [each for entry in document["fills"] + document["filled"] for each in entry["regions"]]:
+        own["name"] = own["name"].replace("Mantel", "Fremd")
+    document["palette"]["Fremd"] = document["palette"].pop("Mantel")
+    path.write_text(json.dumps(document))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    third = bpy.context.object
+    assert set(by_material(addon, third)) == {"Fremd.001", "Paint 3366e6", "Paint ffffff"}
+    assert colour_at(addon, third, 3, places(3)[1][0]) == pytest.approx(SKIN, abs=1e-3)

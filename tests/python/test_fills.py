@@ -155,3 +155,16 @@ def test_the_same_regions_on_any_number_of_threads(film):
         with opened(film) as session:
             found.append(session.fill(CLICKS, threads=threads).points.tobytes())
     assert found[0] == found[1]
+
+
+def test_colours_have_names(film):
+    clicks = [Click(0, (30, 30), RED, "coat"), Click(0, (60, 60), RED, "hair")]
+    with opened(film) as session:
+        filled = session.fill(clicks)
+        assert session.fills() == [Click(0, at, pytest.approx(colour), name) for _, at, colour, name in clicks]
+        for frame in range(4):
+            assert [region.name for region in filled.on(frame)] == ["coat", "hair"]
+        # An error of painting brings the clicks back, with their names.
+        with pytest.raises(RototoonError):
+            session.fill([Click(9, (1, 1), RED)])
+        assert [click.name for click in session.fills()] == ["coat", "hair"]

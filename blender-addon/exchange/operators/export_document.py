@@ -119,7 +119,8 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     def _add_paint(self, ob, written: dict) -> int:
         """Puts paint into a document. Returns the number of frames that have some."""
         fills, regions = filled.of(ob)
-        for name, value in (("fills", fills), ("filled", regions)):
+        named = filled.palette(fills, regions)
+        for name, value in (("palette", named), ("fills", fills), ("filled", regions)):
             if value:
                 written[name] = value
         return len({each["frame"] for each in fills + regions})

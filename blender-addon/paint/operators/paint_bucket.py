@@ -126,11 +126,11 @@ class ROTOTOON_OT_paint_bucket(Reporting, OnFootage, bpy.types.Operator):
         way = np.array(view3d_utils.region_2d_to_vector_3d(region, view, at))
         place = bucket.pixel_of(ob, frame, start, way)
         if event.ctrl:
-            taken = bucket.colour_at(ob, frame, place)
-            if taken is not None:
+            found = bucket.taken_at(ob, frame, place)
+            if found is not None:
+                taken, ob.rototoon.fill_name = found
                 ob.rototoon.fill_nothing = not taken
-            if taken:
-                ob.rototoon.fill_colour = taken
+                ob.rototoon.fill_colour = taken or ob.rototoon.fill_colour
             return ""
         return self._fill(context, place)
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xd1224f8a0d228f51
+HEADER_HASH = 0xce57a28ab35c291e
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0
@@ -29,6 +29,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     ),
     "rototoon_session_set_fills": (
         (4, "click_count", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_fills_json": (
+        (2, "fills_length", ctypes.c_size_t),
     ),
     "rototoon_session_fill": (
         (2, "options_length", ctypes.c_size_t),
@@ -197,6 +200,13 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_size_t,
         ctypes.c_void_p,
     ]
+    library.rototoon_session_set_fills_json.restype = ctypes.c_int32
+    library.rototoon_session_set_fills_json.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+    ]
     library.rototoon_session_fills.restype = ctypes.c_int32
     library.rototoon_session_fills.argtypes = [
         ctypes.c_void_p,
@@ -231,6 +241,12 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_filled_names.restype = ctypes.c_int32
+    library.rototoon_filled_names.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import json
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Self
@@ -262,8 +263,8 @@ class FilledArrays(Handle):
 
     _free = "rototoon_filled_free"
 
-    def read(self, *_sizes: int) -> tuple[memoryview, ...]:
-        """The arrays of `fills.Filled` in their order, as copies."""
+    def read(self, *_sizes: int) -> tuple[Any, ...]:
+        """The arrays of `fills.Filled` in their order, as copies, and the names of colours."""
         count = ctypes.c_size_t()
         out = [ctypes.c_void_p() for _ in range(9)]
         call("rototoon_filled_read", self.pointer(), ctypes.byref(count), *map(ctypes.byref, out))
@@ -282,6 +283,7 @@ class FilledArrays(Handle):
             outlines,
             ends,
             view(points, "d", ends[outlines[regions]], 2),
+            json.loads(take(Text, "rototoon_filled_names", self.pointer())),
         )
 
 

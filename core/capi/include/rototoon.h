@@ -157,8 +157,14 @@ RototoonStatus rototoon_session_set_fills(const struct RototoonSession *session,
                                           size_t click_count,
                                           struct RototoonText **error);
 
+// Replaces the clicks of the painter by some in the form of the document's `fills`, as JSON: so colours can have names.
+RototoonStatus rototoon_session_set_fills_json(const struct RototoonSession *session,
+                                               const uint8_t *fills,
+                                               size_t fills_length,
+                                               struct RototoonText **error);
+
 // Returns the clicks of the painter as JSON, in the form of the document's `fills`: `[{"frame", "regions": [{"at":
-// [x, y], "colour": [r, g, b]}]}]`.
+// [x, y], "colour": [r, g, b], "name"}]}]`. `name` is there if the colour has one.
 RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
                                       struct RototoonText **fills,
                                       struct RototoonText **error);
@@ -173,7 +179,8 @@ RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
 // per core. Regions of frames outside of `frames` stay in the document. It is an error if there is no click.
 //
 // `filled` has the regions of all frames, as `rototoon_session_filled` gives them. `report` is JSON: `{"frames":
-// [{"frame", "regions", "doubtful", "related", "bare"}], "missed": [{"frame", "click"}], "overruled": [{"frame", "click"}]}`.
+// [{"frame", "regions", "doubtful", "related", "bare"}], "missed": [{"frame", "click"}], "overruled": [{"frame", "click"}], "leaking":
+// [{"frame", "click", "parted", "gap", "width", "size"}]}`.
 //
 // - `frames` are the frames that were looked at. `doubtful` is the number of regions whose colour is probably wrong.
 //   `related` is false if no painted drawing shows the same; such a frame stays unpainted. `bare` is true if the drawing has hardly any
@@ -181,6 +188,8 @@ RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
 // - `missed` are the clicks that lie on a line or outside of the picture, and so paint nothing. `click` is the index
 //   among the clicks of its frame.
 // - `overruled` are the clicks that paint nothing because a later click has given their region another colour.
+// - `leaking` are the clicks from which a gap leads to the edge of the picture. `gap` is its place and `width` how wide it is, `size` are width and
+//   height of what the click paints, all in pixels. If `parted` is true, the gap was closed; otherwise the region is in doubt.
 RototoonStatus rototoon_session_fill(const struct RototoonSession *session,
                                      const uint8_t *options,
                                      size_t options_length,
@@ -221,6 +230,11 @@ RototoonStatus rototoon_filled_read(const struct RototoonFilled *filled,
                                     const int32_t **point_offsets,
                                     const double **points,
                                     struct RototoonText **error);
+
+// Returns the names of the colours of all regions as JSON: a list with a text or null for each region.
+RototoonStatus rototoon_filled_names(const struct RototoonFilled *filled,
+                                     struct RototoonText **names,
+                                     struct RototoonText **error);
 
 // Frees painted regions. Null is allowed.
 void rototoon_filled_free(struct RototoonFilled *filled);

@@ -24,6 +24,8 @@ pub struct RototoonFilled {
     pub region_offsets: Vec<i32>,
     /// The number of each region, the same on all frames.
     pub tracks: Vec<i32>,
+    /// For each region the name of its colour.
+    pub names: Vec<Option<String>>,
     /// Three numbers for each region, sRGB from 0 to 1.
     pub colours: Vec<f64>,
     /// For each region the probability that its colour is right.
@@ -59,6 +61,7 @@ impl RototoonFilled {
 
     fn push(&mut self, region: &FilledRegion, frame: FrameNumber) -> Result<(), Failure> {
         self.tracks.push(counted(region.track, "track", frame)?);
+        self.names.push(region.name.clone());
         self.colours.extend(region.colour.map(f64::from));
         self.confidence.push(region.confidence);
         self.doubtful.push((region.confidence < DOUBT).into());
@@ -98,7 +101,7 @@ pub fn clicks_by_frame(frames: &[i32], places: &[f64], colours: &[f64]) -> Resul
             )));
         }
         let colour = (!is_bare).then(|| colour.map(|value| value as f32));
-        found.entry(frame).or_default().push(FillClick { at: Point::new(x, y), colour });
+        found.entry(frame).or_default().push(FillClick { at: Point::new(x, y), colour, name: None });
     }
     Ok(found.into_iter().map(|(frame, clicks)| FillClicks { frame, clicks }).collect())
 }
@@ -189,10 +192,11 @@ mod tests {
             outline: triangle(1.0),
             holes: vec![triangle(5.0), vec![Point::ONE; 4]],
             colour: [0.0, 0.5, 1.0],
+            name: Some("coat".into()),
             track: 7,
             confidence: 0.25,
         };
-        let plain = FilledRegion { holes: Vec::new(), track: 2, confidence: 1.0, ..ring.clone() };
+        let plain = FilledRegion { holes: Vec::new(), name: None, track: 2, confidence: 1.0, ..ring.clone() };
         let drawings =
             [FilledDrawing { frame: -1, regions: Vec::new() }, FilledDrawing { frame: 7, regions: vec![ring, plain] }];
         let found = RototoonFilled::of(&drawings).unwrap();
@@ -200,6 +204,7 @@ mod tests {
         assert_eq!((&found.tracks[..], &found.doubtful[..]), (&[7, 2][..], &[1, 0][..]));
         assert_eq!((&found.confidence[..], &found.colours[..3]), (&[0.25, 1.0][..], &[0.0, 0.5, 1.0][..]));
         assert_eq!((&found.outline_offsets[..], &found.point_offsets[..]), (&[0, 3, 4][..], &[0, 3, 6, 10, 13][..]));
+        assert_eq!(found.names, [Some("coat".to_owned()), None]);
         assert_eq!((found.points.len(), &found.points[6..8]), (26, &[5.0, 0.0][..]));
     }
 

@@ -45,8 +45,26 @@ pub unsafe extern "C" fn rototoon_session_set_fills(
     }
 }
 
+/// Replaces the clicks of the painter by some in the form of the document's `fills`, as JSON: so colours can have names.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_fills_json(
+    session: *const RototoonSession,
+    fills: *const u8,
+    fills_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let fills = text(fills, fills_length, "fills")?;
+            session.with(|session| session.set_fills_json(fills))
+        })
+    }
+}
+
 /// Returns the clicks of the painter as JSON, in the form of the document's `fills`: `[{"frame", "regions": [{"at":
-/// [x, y], "colour": [r, g, b]}]}]`.
+/// [x, y], "colour": [r, g, b], "name"}]}]`. `name` is there if the colour has one.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_fills(
     session: *const RototoonSession,
@@ -189,6 +207,24 @@ pub unsafe extern "C" fn rototoon_filled_read(
             outline_offsets.write(filled.outline_offsets.as_ptr());
             point_offsets.write(filled.point_offsets.as_ptr());
             points.write(filled.points.as_ptr());
+            Ok(())
+        })
+    }
+}
+
+/// Returns the names of the colours of all regions as JSON: a list with a text or null for each region.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_filled_names(
+    filled: *const RototoonFilled,
+    names: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(names, null_mut(), "names")?;
+            let filled = handle(filled, "filled")?;
+            give(names, RototoonText::new(serde_json::json!(filled.names).to_string()));
             Ok(())
         })
     }

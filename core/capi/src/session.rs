@@ -242,6 +242,13 @@ impl Session {
         Ok(filled::fills_to_json(&fills))
     }
 
+    /// Replaces the clicks of the painter by some in the form of the document's `fills`.
+    pub fn set_fills_json(&mut self, json: &str) -> Result<(), Failure> {
+        let fills = self.document.read_fills(json).map_err(Failure::error)?;
+        self.document.set_fills(&fills);
+        Ok(())
+    }
+
     /// Replaces the clicks of the painter.
     pub fn set_fills(&mut self, fills: &[FillClicks]) {
         self.document.set_fills(fills);

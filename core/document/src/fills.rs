@@ -1,32 +1,62 @@
 //! Clicks of a painter, and the painted regions of every frame.
 //!
 //! ```json
-//! "fills": [{"frame": 0, "regions": [{"at": [x, y], "colour": [r, g, b]}, "…"]}, "…"],
-//! "filled": [{"frame": 0, "regions": [{"outline": [[x, y], "…"], "holes": [[[x, y], "…"], "…"], "colour": [r, g, b],
+//! "palette": {"coat": [r, g, b], "…": "…"},
+//! "fills": [{"frame": 0, "regions": [{"at": [x, y], "name": "coat", "colour": [r, g, b]}, "…"]}, "…"],
+//! "filled": [{"frame": 0, "regions": [{"outline": [[x, y], "…"], "holes": [[[x, y], "…"], "…"], "name": "coat", "colour": [r, g, b],
 //!   "track": 3, "confidence": 0.9}, "…"]}, "…"]
 //! ```
 //!
 //! - Frames ascend. Colours are sRGB-encoded, 0 to 1. Paper is a colour too. Places are pixels.
+//! - `name` is optional. The name of a colour is what it is, and `colour` how it looks: two names stay two colours even where they look the same, and one
+//!   name has one look in a document. `palette` says how named colours look. What it says counts for clicks and for regions that are painted
+//!   already, so a night palette is one edit. A click with a name of the palette needs no `colour`. Without `palette` the first click of a name counts.
+//!   A colour without a name is what it looks like.
 //! - `track` is the number of a region, the same on all frames; on one frame each number occurs once.
 //! - Later regions of a frame lie over earlier ones. What is within a hole is not painted by its region.
 //! - `confidence` is the probability, 0 to 1, that the colour is right; 1 where an artist clicked.
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, array, by_frame, colour, count, given, object, point, share, wrong};
+use super::fields::{FieldError, array, by_frame, colour, count, described, given, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, FrameNumber};
 use serde_json::{Map, Value, json};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A colour of paint: by its name if it has one, otherwise by its look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hue {
+    /// Its name.
+    pub name: Option<String>,
+    /// Its look, sRGB-encoded, 0 to 1.
+    pub colour: Colour,
+}
+
+impl Hue {
+    /// Whether both are one colour, whatever the look of names.
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.name == other.name && (self.name.is_some() || self.colour == other.colour)
+    }
+}
 
 /// A click with the paint bucket.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FillClick {
     /// The place in pixels.
     pub at: Point,
     /// The colour, sRGB-encoded, 0 to 1. `None` says that the region stays without paint.
     pub colour: Option<Colour>,
+    /// The name of the colour.
+    pub name: Option<String>,
+}
+
+impl FillClick {
+    /// Its colour; `None` for no paint.
+    pub fn hue(&self) -> Option<Hue> {
+        self.colour.map(|colour| Hue { name: self.name.clone(), colour })
+    }
 }
 
 /// The clicks of one frame.
@@ -43,7 +73,11 @@ impl FillClicks {
     pub fn to_json(&self) -> Value {
         let click = |click: &FillClick| {
             let at = click.at.to_array().map(|value| rounded(value, DECIMALS));
-            json!({"at": at, "colour": click.colour.map(written_colour)})
+            let mut out = json!({"at": at, "colour": click.colour.map(written_colour)});
+            if let Some(name) = &click.name {
+                out["name"] = json!(name);
+            }
+            out
         };
         json!({"frame": self.frame, "regions": self.clicks.iter().map(click).collect::<Vec<_>>()})
     }
@@ -58,10 +92,19 @@ pub struct FilledRegion {
     pub holes: Vec<Vec<Point>>,
     /// Its colour, sRGB-encoded, 0 to 1.
     pub colour: Colour,
+    /// The name of its colour.
+    pub name: Option<String>,
     /// Its number on all frames.
     pub track: usize,
     /// The probability that the colour is right, 0 to 1.
     pub confidence: f64,
+}
+
+impl FilledRegion {
+    /// Its colour.
+    pub fn hue(&self) -> Hue {
+        Hue { name: self.name.clone(), colour: self.colour }
+    }
 }
 
 /// The painted regions of one frame.
@@ -74,17 +117,50 @@ pub struct FilledDrawing {
 }
 
 impl Document {
-    /// The clicks of the painter; empty if there are none.
+    /// How named colours look; empty if nothing is said.
+    ///
+    /// # Errors
+    ///
+    /// The first invalid field.
+    pub fn palette(&self) -> Result<BTreeMap<String, Colour>, FieldError> {
+        let Some(json) = self.other_field("palette") else { return Ok(BTreeMap::new()) };
+        let value = serde_json::from_str(json).map_err(|error| wrong("palette", &error.to_string(), "JSON"))?;
+        let read = |(name, value): (&String, &Value)| {
+            Ok((name.clone(), colour(Some(value), &format!("palette.{name}"), share)?))
+        };
+        object(&value, "palette")?.iter().map(read).collect()
+    }
+
+    /// The clicks of the painter; empty if there are none. Clicks of one name have one look.
     ///
     /// # Errors
     ///
     /// The first invalid field.
     pub fn fills(&self) -> Result<Vec<FillClicks>, FieldError> {
+        let palette = self.palette()?;
         let read = |on: FrameNumber, list: &[Value], place: &str| {
-            let click = |(i, value): (usize, &Value)| click(value, &format!("{place}[{i}]"));
+            let click = |(i, value): (usize, &Value)| click(value, &palette, &format!("{place}[{i}]"));
             Ok(FillClicks { frame: on, clicks: list.iter().enumerate().map(click).collect::<Result<_, _>>()? })
         };
-        by_frame(&self.other_list("fills")?, ["fills", "regions"], read)
+        let mut fills = by_frame(&self.other_list("fills")?, ["fills", "regions"], read)?;
+        let mut looks = BTreeMap::new();
+        for click in fills.iter_mut().flat_map(|own| &mut own.clicks) {
+            if let (Some(name), Some(colour)) = (&click.name, &mut click.colour) {
+                *colour = *looks.entry(name.clone()).or_insert(*colour);
+            }
+        }
+        Ok(fills)
+    }
+
+    /// Reads clicks in the form of the field `fills`.
+    ///
+    /// # Errors
+    ///
+    /// Text that is no JSON, and the first invalid field.
+    pub fn read_fills(&self, json: &str) -> Result<Vec<FillClicks>, FieldError> {
+        let mut other = self.clone();
+        other.set_other_field("fills", json.to_owned());
+        other.fills()
     }
 
     /// Puts clicks into the document, in place of earlier ones. Without any, the field is removed.
@@ -103,11 +179,15 @@ impl Document {
     ///
     /// The first invalid field.
     pub fn filled(&self) -> Result<Vec<FilledDrawing>, FieldError> {
+        let palette = self.palette()?;
         by_frame(&self.other_list("filled")?, ["filled", "regions"], |on, list, place| {
             let mut tracks = BTreeSet::new();
             let read = |(i, value): (usize, &Value)| {
                 let place = format!("{place}[{i}]");
-                let region = region(value, &place)?;
+                let mut region = region(value, &place)?;
+                if let Some(look) = region.name.as_ref().and_then(|name| palette.get(name)) {
+                    region.colour = *look;
+                }
                 match tracks.insert(region.track) {
                     true => Ok(region),
                     false => {
@@ -129,14 +209,39 @@ impl Document {
     }
 }
 
-fn click(value: &Value, place: &str) -> Result<FillClick, FieldError> {
+fn click(value: &Value, palette: &BTreeMap<String, Colour>, place: &str) -> Result<FillClick, FieldError> {
     let fields = object(value, place)?;
     let at = point(fields.get("at"), &format!("{place}.at"))?;
-    let colour = match fields.get("colour") {
-        Some(Value::Null) => None,
-        given => Some(colour(given, &format!("{place}.colour"), share)?),
+    let name = given(fields, place, "name", name)?;
+    let look = name.as_ref().and_then(|name| palette.get(name).copied());
+    let colour = match (fields.get("colour"), &name) {
+        (Some(Value::Null), Some(name)) => {
+            return Err(wrong(
+                &format!("{place}.name"),
+                &format!("{name:?}"),
+                "none beside no paint, \"colour\": null",
+            ));
+        }
+        (Some(Value::Null), None) => None,
+        (None, Some(name)) if look.is_none() => {
+            let found = format!("{name:?}");
+            return Err(wrong(&format!("{place}.name"), &found, "a name of the field palette, or a colour beside it"));
+        }
+        (None, Some(_)) => look,
+        (given, _) => {
+            let own = colour(given, &format!("{place}.colour"), share)?;
+            Some(look.unwrap_or(own))
+        }
     };
-    Ok(FillClick { at, colour })
+    Ok(FillClick { at, colour, name })
+}
+
+/// Reads the name of a colour.
+fn name(value: Option<&Value>, place: &str) -> Result<String, FieldError> {
+    match value.and_then(Value::as_str) {
+        Some(name) if !name.is_empty() => Ok(name.to_owned()),
+        _ => Err(wrong(place, &described(value), "the name of a colour")),
+    }
 }
 
 fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
@@ -155,6 +260,7 @@ fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
         outline: outline(fields.get("outline"), &format!("{place}.outline"))?,
         holes,
         colour: colour(fields.get("colour"), &format!("{place}.colour"), share)?,
+        name: given(fields, place, "name", name)?,
         track: count(fields.get("track"), &format!("{place}.track"))?,
         confidence: given(fields, place, "confidence", share)?.unwrap_or(1.0),
     })
@@ -172,6 +278,9 @@ fn written(region: &FilledRegion) -> Value {
     out.insert("outline".into(), json!(line(&region.outline)));
     if !region.holes.is_empty() {
         out.insert("holes".into(), json!(region.holes.iter().map(|hole| line(hole)).collect::<Vec<_>>()));
+    }
+    if let Some(name) = &region.name {
+        out.insert("name".into(), json!(name));
     }
     out.insert("colour".into(), json!(written_colour(region.colour)));
     out.insert("track".into(), json!(region.track));
@@ -204,7 +313,7 @@ mod tests {
     #[test]
     fn clicks_are_read() {
         let doc = document(r#""fills": [{"frame": 2, "regions": [{"at": [3, 4.5], "colour": [1, 0.5, 0]}]}]"#);
-        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([1.0, 0.5, 0.0]) };
+        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([1.0, 0.5, 0.0]), name: None };
         assert_eq!(doc.fills().unwrap(), [FillClicks { frame: 2, clicks: vec![click] }]);
         assert!(document(r#""author": 1"#).fills().unwrap().is_empty());
     }
@@ -212,9 +321,10 @@ mod tests {
     #[test]
     fn clicks_are_written_and_removed() {
         let mut doc = document(r#""author": "a""#);
-        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([0.1, 0.5, 0.0]) };
-        let bare = FillClick { colour: None, ..click };
-        let fills = [FillClicks { frame: -1, clicks: vec![click, bare] }, FillClicks { frame: 2, clicks: vec![click] }];
+        let click = FillClick { at: Point::new(3.0, 4.5), colour: Some([0.1, 0.5, 0.0]), name: Some("coat".into()) };
+        let bare = FillClick { colour: None, name: None, ..click.clone() };
+        let fills =
+            [FillClicks { frame: -1, clicks: vec![click.clone(), bare] }, FillClicks { frame: 2, clicks: vec![click] }];
         doc.set_fills(&fills);
         let again = Document::parse(&doc.to_json(), "a.json").unwrap();
         assert_eq!(again.fills().unwrap(), fills);
@@ -228,14 +338,50 @@ mod tests {
         let mut doc = document(r#""author": "a""#);
         let square = |at: f64| [(0.0, 0.0), (9.5, 0.0), (9.5, 9.5)].map(|(x, y)| Point::new(at + x, at + y)).to_vec();
         let colour = [0.1, 0.2, 0.3];
-        let region =
-            FilledRegion { outline: square(1.0), holes: vec![square(3.0)], colour, track: 4, confidence: 0.75 };
-        let drawings = [FilledDrawing { frame: 1, regions: vec![region] }];
+        let region = FilledRegion {
+            outline: square(1.0),
+            holes: vec![square(3.0)],
+            colour,
+            name: None,
+            track: 4,
+            confidence: 0.75,
+        };
+        let named = FilledRegion { name: Some("Mantel".into()), track: 5, ..region.clone() };
+        let drawings = [FilledDrawing { frame: 1, regions: vec![region, named] }];
         doc.set_filled(&drawings);
         let text = doc.to_json();
         assert!(text.contains("0.1"), "{text}");
         let again = Document::parse(&text, "a.json").unwrap();
         assert_eq!(again.filled().unwrap(), drawings);
+    }
+
+    #[test]
+    fn a_named_colour_looks_as_the_palette_says() {
+        let fields = r#""fills": [{"frame": 0, "regions": [{"at": [1, 1], "name": "coat"}, {"at": [2, 2], "name": "hair", "colour": [1, 0, 0]},
+            {"at": [3, 3], "name": "boot", "colour": [1, 0, 0]}, {"at": [4, 4], "name": "boot", "colour": [0, 1, 0]}]}],
+            "filled": [{"frame": 0, "regions": [{"outline": [], "name": "coat", "colour": [0.5, 0.5, 0.5], "track": 0},
+            {"outline": [], "colour": [0.5, 0.5, 0.5], "track": 1}]}]"#;
+        let doc = document(&format!(r#""palette": {{"coat": [0, 0, 1], "hair": [0, 1, 1]}}, {fields}"#));
+        let clicks = doc.fills().unwrap().remove(0).clicks;
+        let looks: Vec<Colour> = clicks.iter().filter_map(|click| click.colour).collect();
+        assert_eq!(
+            looks,
+            [[0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+            "one name has one look"
+        );
+        let hues: Vec<Hue> = clicks.iter().filter_map(FillClick::hue).collect();
+        assert!(hues[2].is_same(&hues[3]) && !hues[1].is_same(&hues[2]));
+        let regions = doc.filled().unwrap().remove(0).regions;
+        assert_eq!([regions[0].colour, regions[1].colour], [[0.0, 0.0, 1.0], [0.5; 3]]);
+        let told = |text: &str| document(text).fills().unwrap_err().to_string();
+        assert_eq!(
+            told(fields),
+            "fills[0] (frame 0).regions[0].name: found \"coat\", expected a name of the field palette, or a colour beside it"
+        );
+        let one = |click: &str| told(&format!(r#""fills": [{{"frame": 0, "regions": [{{"at": [1, 1], {click}}}]}}]"#));
+        assert!(one(r#""name": "", "colour": [1, 1, 1]"#).ends_with("expected the name of a colour"));
+        assert!(one(r#""name": "coat", "colour": null"#).contains("expected none beside no paint"));
+        assert!(told(r#""palette": {"coat": [0, 0]}, "fills": []"#).starts_with("palette.coat: found a list of 2"));
     }
 
     #[test]

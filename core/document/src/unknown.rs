@@ -11,7 +11,7 @@ use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 14] = [
+const OTHERS: [&str; 15] = [
     "drawings",
     "pairs",
     "pegs",
@@ -25,6 +25,7 @@ const OTHERS: [&str; 14] = [
     "traced",
     "fills",
     "filled",
+    "palette",
     "clips",
 ];
 

@@ -56,7 +56,8 @@ pub fn attributes<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Attrib
     let mut ids: BTreeMap<u32, &str> = BTreeMap::new();
     for name in names {
         let id = id(name);
-        if let Some(first) = ids.insert(id, name) {
+        // Several things may have one name: they are one matte.
+        if let Some(first) = ids.insert(id, name).filter(|first| *first != name) {
             return Err(SameId { first: first.to_owned(), second: name.to_owned() });
         }
         manifest.insert(name.to_owned(), format!("{id:08x}").into());
@@ -83,7 +84,12 @@ pub fn channels(names: &[&str], visible: &Visible) -> Vec<Channel> {
     let mut ranked: Vec<Share> = Vec::new();
     for (at, pixel) in visible.pixels().enumerate() {
         ranked.clear();
-        ranked.extend(pixel);
+        for share in pixel {
+            match ranked.iter_mut().find(|own| ids[own.part].to_bits() == ids[share.part].to_bits()) {
+                Some(own) => own.coverage += share.coverage,
+                None => ranked.push(*share),
+            }
+        }
         // Of equal shares the nearer part comes first.
         ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
         for (rank, share) in ranked.iter().enumerate() {
@@ -98,6 +104,12 @@ pub fn channels(names: &[&str], visible: &Visible) -> Vec<Channel> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn things_of_one_name_are_one_matte() {
+        let found = attributes(["coat", "hair", "coat"].into_iter()).unwrap();
+        assert_eq!(found.len(), 4);
+    }
 
     #[test]
     fn the_hash_has_its_published_values() {

@@ -22,8 +22,8 @@ use crate::fill::{Click, Gap, Page, Paint, Source, carry, fills};
 use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
-use crate::project::fills::{FillClicks, FilledDrawing, FilledRegion};
-use crate::scene::{Colour, FrameNumber, FrameSource, Progress};
+use crate::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion, Hue};
+use crate::scene::{FrameNumber, FrameSource, Progress};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
@@ -95,15 +95,15 @@ pub fn fill(
 
 /// Gives new numbers to regions whose number has another colour on frames that were kept from an earlier run.
 fn keep_apart(found: &mut [FilledDrawing], kept: &[FilledDrawing]) {
-    let regions = |drawings: &[FilledDrawing]| -> Vec<(usize, Colour)> {
-        drawings.iter().flat_map(|drawing| &drawing.regions).map(|region| (region.track, region.colour)).collect()
+    let regions = |drawings: &[FilledDrawing]| -> Vec<(usize, Hue)> {
+        drawings.iter().flat_map(|drawing| &drawing.regions).map(|region| (region.track, region.hue())).collect()
     };
     let (new, old) = (regions(found), regions(kept));
-    let colours: BTreeMap<usize, Colour> = old.iter().copied().collect();
+    let colours: BTreeMap<usize, Hue> = old.iter().cloned().collect();
     let mut next = new.iter().chain(&old).map(|own| own.0 + 1).max().unwrap_or(0);
     let mut renamed: BTreeMap<usize, usize> = BTreeMap::new();
     for region in found.iter_mut().flat_map(|drawing| &mut drawing.regions) {
-        if colours.get(&region.track).is_some_and(|colour| *colour != region.colour) {
+        if colours.get(&region.track).is_some_and(|own| !own.is_same(&region.hue())) {
             region.track = *renamed.entry(region.track).or_insert_with(|| {
                 next += 1;
                 next - 1
@@ -141,19 +141,19 @@ pub(super) fn fills_to_export(document: &Document) -> Result<Vec<SvgFill>, Pipel
     let filled = document.filled().map_err(|error| field(&error))?;
     let mut fills: BTreeMap<usize, SvgFill> = BTreeMap::new();
     for (frame, region) in filled.into_iter().flat_map(|d| d.regions.into_iter().map(move |region| (d.frame, region))) {
-        let FilledRegion { track, colour, outline, holes, .. } = region;
-        let own = fills.entry(track).or_insert_with(|| SvgFill { track, colour, ..SvgFill::default() });
+        let FilledRegion { track, colour, name, outline, holes, .. } = region;
+        let own = fills.entry(track).or_insert_with(|| SvgFill { track, colour, name, ..SvgFill::default() });
         own.outlines.insert(frame, [outline].into_iter().chain(holes).collect());
     }
     Ok(fills.into_values().collect())
 }
 
 /// All colours, each once, in the order in which they come.
-fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Colour> {
-    let mut palette: Vec<Colour> = Vec::new();
-    for colour in clicks.iter().flat_map(|own| &own.1.clicks).filter_map(|click| click.colour) {
-        if !palette.contains(&colour) {
-            palette.push(colour);
+fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Hue> {
+    let mut palette: Vec<Hue> = Vec::new();
+    for hue in clicks.iter().flat_map(|own| &own.1.clicks).filter_map(FillClick::hue) {
+        if !palette.iter().any(|own| own.is_same(&hue)) {
+            palette.push(hue);
         }
     }
     palette
@@ -184,7 +184,7 @@ struct Painting<'a> {
     holds: Holds<'a>,
     options: &'a FillOptions,
     progress: &'a dyn Progress,
-    palette: Vec<Colour>,
+    palette: Vec<Hue>,
     /// The next new number of a region.
     next: usize,
     all: usize,
@@ -334,8 +334,8 @@ impl Painting<'_> {
     }
 
     fn clicks(&self, clicks: &FillClicks) -> Vec<Click> {
-        let number = |colour: Colour| self.palette.iter().position(|own| *own == colour);
-        clicks.clicks.iter().map(|click| Click { at: click.at, colour: click.colour.and_then(number) }).collect()
+        let number = |hue: Hue| self.palette.iter().position(|own| own.is_same(&hue));
+        clicks.clicks.iter().map(|click| Click { at: click.at, colour: click.hue().and_then(number) }).collect()
     }
 
     fn miss(&mut self, clicks: &(usize, FillClicks), in_vain: &InVain) {
@@ -351,7 +351,8 @@ impl Painting<'_> {
     /// Puts a painted drawing down.
     fn keep(&mut self, painted: &Painted) {
         let region = |fill: crate::fill::Fill| FilledRegion {
-            colour: self.palette[fill.colour],
+            colour: self.palette[fill.colour].colour,
+            name: self.palette[fill.colour].name.clone(),
             outline: fill.outline,
             holes: fill.holes,
             track: fill.track,

@@ -81,11 +81,11 @@ impl Cels {
 
     /// The names of all regions and strokes, as in [`Region::name`].
     pub fn names(&self) -> BTreeSet<String> {
-        let regions: BTreeSet<usize> = self.regions.values().flatten().map(|region| region.track).collect();
+        let regions: BTreeSet<String> = self.regions.values().flatten().map(named).collect();
         let strokes: BTreeSet<strokes::Id> = self.strokes.values().flatten().map(|seen| seen.id).collect();
         let filled = self.strokes.values().flatten().filter(|seen| seen.stroke.fill_colour.is_some());
         let fills = filled.map(|seen| fill_of(seen.id));
-        regions.into_iter().map(named).chain(strokes.iter().map(strokes::Id::to_string)).chain(fills).collect()
+        regions.into_iter().chain(strokes.iter().map(strokes::Id::to_string)).chain(fills).collect()
     }
 
     /// The frames with painted regions, each with the least confidence of one.
@@ -123,9 +123,9 @@ impl Cels {
     }
 }
 
-/// The name of a painted region by its number.
-fn named(track: usize) -> String {
-    format!("region {track}")
+/// The name of a painted region: that of its colour, which all regions of that colour share, otherwise one by its number.
+fn named(region: &FilledRegion) -> String {
+    region.name.clone().unwrap_or_else(|| format!("region {}", region.track))
 }
 
 /// The name of the fill of a stroke that has a line too.
@@ -133,9 +133,10 @@ fn fill_of(id: strokes::Id) -> String {
     format!("{id} fill")
 }
 
-fn region(FilledRegion { outline, holes, colour, track, .. }: &FilledRegion, scale: f64) -> Region {
+fn region(own: &FilledRegion, scale: f64) -> Region {
+    let FilledRegion { outline, holes, colour, .. } = own;
     Region {
-        name: named(*track),
+        name: named(own),
         areas: vec![scaled(outline, scale)],
         holes: holes.iter().map(|hole| scaled(hole, scale)).collect(),
         colour: *colour,

@@ -57,7 +57,7 @@ mod tests {
     }
 
     fn region(outline: Vec<Point>, holes: Vec<Vec<Point>>, red: f32) -> FilledRegion {
-        FilledRegion { colour: [red, 0.0, 0.0], outline, holes, track: 0, confidence: f64::from(red) }
+        FilledRegion { colour: [red, 0.0, 0.0], outline, holes, name: None, track: 0, confidence: f64::from(red) }
     }
 
     #[test]

@@ -58,6 +58,7 @@ impl Truth {
         let click = |region: &Region| FillClick {
             at: self.deepest(region),
             colour: Some(region.colour.map(|value| f32::from(value) / 255.0)),
+            name: None,
         };
         self.regions.iter().map(click).collect()
     }

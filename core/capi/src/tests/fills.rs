@@ -3,8 +3,8 @@
 use super::{cancel, document, open, outcome, session, take};
 use crate::entry::MAX_BYTES;
 use crate::filled_abi::{
-    rototoon_filled_free, rototoon_filled_read, rototoon_session_fill, rototoon_session_filled, rototoon_session_fills,
-    rototoon_session_set_fills,
+    rototoon_filled_free, rototoon_filled_names, rototoon_filled_read, rototoon_session_fill, rototoon_session_filled,
+    rototoon_session_fills, rototoon_session_set_fills, rototoon_session_set_fills_json,
 };
 use crate::session_abi::RototoonSession;
 use crate::status::RototoonStatus::{self, BadArgument, Cancelled, Error, Ok as Fine};
@@ -42,6 +42,26 @@ fn fill(session: *const RototoonSession, options: &str, stop: bool) -> (Rototoon
         rototoon_filled_free(filled);
         take(report);
         found
+    }
+}
+
+#[test]
+fn colours_have_names() {
+    let session = session();
+    let text = r#"[{"frame": 1, "regions": [{"at": [1, 2], "colour": [1, 0, 0], "name": "coat"}]}]"#;
+    // SAFETY: a living session, texts with their lengths, locals.
+    unsafe {
+        let set =
+            |text: &str| outcome(|error| rototoon_session_set_fills_json(session.0, text.as_ptr(), text.len(), error));
+        assert_eq!(set(text), (Fine, String::new()));
+        assert_eq!(document(&session)["fills"][0]["regions"][0]["name"], "coat");
+        assert_eq!(set("{").0, Error);
+        assert!(set(r#"[{"frame": 1, "regions": [{"at": [1, 2]}]}]"#).1.starts_with("fills[0] (frame 1).regions[0]"));
+        let mut names = null_mut();
+        let empty = crate::filled::RototoonFilled { names: vec![Some("coat".into()), None], ..Default::default() };
+        assert_eq!(outcome(|error| rototoon_filled_names(&empty, &mut names, error)).0, Fine);
+        assert_eq!(take(names), r#"["coat",null]"#);
+        assert_eq!(outcome(|error| rototoon_filled_names(null(), &mut names, error)).0, BadArgument);
     }
 }
 

@@ -100,6 +100,8 @@ pub struct SvgStroke {
 pub struct SvgFill {
     /// Its number.
     pub track: usize,
+    /// The name of its colour.
+    pub name: Option<String>,
     /// Its outline and those of its holes on each frame, in pixels of the footage.
     pub outlines: BTreeMap<FrameNumber, Vec<Vec<Point>>>,
     /// Its colour, sRGB-encoded, 0 to 1.
@@ -162,8 +164,10 @@ fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
         Some(outlines.iter().map(|outline| data(outline, true)).collect::<String>())
     };
     let (track, colour) = (fill.track, palette::hex(fill.colour));
-    let style = format!("id=\"fill-{track}\" fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"none\"");
-    path(out, scene, &style, (&format!("region {track}"), &BTreeMap::new(), ""), Motion::Hold, shape);
+    let named = fill.name.as_ref().map_or_else(String::new, |name| format!("data-colour=\"{}\" ", escaped(name)));
+    let style = format!("id=\"fill-{track}\" {named}fill=\"{colour}\" fill-rule=\"evenodd\" stroke=\"none\"");
+    let name = fill.name.as_ref().map_or_else(|| format!("region {track}"), |name| escaped(name).to_string());
+    path(out, scene, &style, (&name, &BTreeMap::new(), ""), Motion::Hold, shape);
 }
 
 fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
@@ -487,11 +491,15 @@ mod tests {
             [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)].map(|(x, y)| Point::new(at + x, at + y)).to_vec()
         };
         let outlines = BTreeMap::from([(scene.footage.first, vec![square(1.0, 9.0), square(3.0, 2.0)])]);
-        let fill = SvgFill { track: 3, outlines, colour: [1.0, 0.0, 0.0] };
-        let text = svg_with_drawn(&scene, &[fill], &[], &SvgOptions::default());
+        let fill = SvgFill { track: 3, name: None, outlines, colour: [1.0, 0.0, 0.0] };
+        let text = svg_with_drawn(&scene, std::slice::from_ref(&fill), &[], &SvgOptions::default());
         let expected = "<path id=\"fill-3\" fill=\"#ff0000\" fill-rule=\"evenodd\" stroke=\"none\" \
                         d=\"M1 1L10 1 10 10 1 10ZM3 3L5 3 5 5 3 5Z\">";
         assert!(text.contains(expected), "{text}");
+        let named = SvgFill { name: Some("M & <W>".into()), ..fill.clone() };
+        let told = svg_with_drawn(&scene, &[named], &[], &SvgOptions::default());
+        let expected = "<path id=\"fill-3\" data-colour=\"M &amp; &lt;W&gt;\" fill=\"#ff0000\"";
+        assert!(told.contains(expected) && told.contains("<title>M &amp; &lt;W&gt;</title>"), "{told}");
         let (region, rest) = (text.find("fill-3").unwrap(), text.find("part-0").unwrap());
         assert!(region < rest, "paint is behind the parts");
         assert!(text[region..rest].contains("visible;hidden"), "{text}");

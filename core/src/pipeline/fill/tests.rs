@@ -2,7 +2,7 @@ use super::*;
 use crate::geometry::{Point, polygon};
 use crate::project::fills::FillClick;
 use crate::render::{Format, encode};
-use crate::scene::{Footage, Raster, Scene, Silent};
+use crate::scene::{Colour, Footage, Raster, Scene, Silent};
 
 const PAPER: Colour = [0.9, 0.9, 1.0];
 const RED: Colour = [1.0, 0.0, 0.0];
@@ -48,9 +48,7 @@ impl Film {
     /// Clicks on frames.
     fn clicked(mut self, clicks: &[(FrameNumber, &[FillClick])]) -> Self {
         let entry = |(frame, clicks): &(FrameNumber, &[FillClick])| {
-            let regions: Vec<_> =
-                clicks.iter().map(|c| serde_json::json!({"at": [c.at.x, c.at.y], "colour": c.colour})).collect();
-            serde_json::json!({"frame": frame, "regions": regions})
+            FillClicks { frame: *frame, clicks: clicks.to_vec() }.to_json()
         };
         let fills = serde_json::Value::Array(clicks.iter().map(entry).collect());
         let text = self.document.to_json();
@@ -77,7 +75,7 @@ impl Film {
 }
 
 fn click(at: (f64, f64), colour: Colour) -> FillClick {
-    FillClick { at: Point::from(at), colour: Some(colour) }
+    FillClick { at: Point::from(at), colour: Some(colour), name: None }
 }
 
 /// Distance from the outline of a box.
@@ -258,6 +256,31 @@ fn a_click_that_leaks_through_a_wide_gap_is_named_and_in_doubt() {
     let all = own_clicks();
     let mut film = Film::new(1, open_box(9.0, true)).clicked(&[(0, &all)]);
     assert!(film.fill().unwrap().leaking.is_empty());
+}
+
+#[test]
+fn two_names_of_one_look_stay_two_colours() {
+    let named = |click: FillClick, name: &str| FillClick { name: Some(name.into()), ..click };
+    let [_, coat, hair] = own_clicks();
+    let mut film = Film::new(3, moving)
+        .clicked(&[(0, &[named(coat, "coat"), named(FillClick { colour: Some(RED), ..hair }, "hair")])]);
+    film.fill().unwrap();
+    for frame in 0..=3 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        let found = [x - 35.0, x].map(|x| film.at(frame, (x, 75.0)).unwrap());
+        assert_eq!([0, 1].map(|k| found[k].colour), [RED; 2], "frame {frame}");
+        assert_eq!([0, 1].map(|k| found[k].name.as_deref()), [Some("coat"), Some("hair")], "frame {frame}");
+        assert_ne!(found[0].track, found[1].track);
+    }
+    // A night palette is one edit: nothing is painted again.
+    let mut value: serde_json::Value = serde_json::from_str(&film.document.to_json()).unwrap();
+    value["palette"] = serde_json::json!({"hair": [0.0, 0.0, 1.0]});
+    film.document = Document::parse(&value.to_string(), "film.json").unwrap();
+    assert_eq!([25.0, 60.0].map(|x| film.at(0, (x, 75.0)).unwrap().colour), [RED, BLUE]);
+    let names = super::super::paint::Cels::regions(&film.document).unwrap().names();
+    assert_eq!(names.into_iter().collect::<Vec<_>>(), ["coat", "hair"]);
+    let svg: Vec<Option<String>> = fills_to_export(&film.document).unwrap().into_iter().map(|own| own.name).collect();
+    assert_eq!(svg, [Some("coat".to_owned()), Some("hair".to_owned())]);
 }
 
 #[test]
