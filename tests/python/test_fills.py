@@ -63,7 +63,7 @@ def test_the_colours_of_a_frame_are_on_every_frame(film):
         document = session.document()
         assert document["note"] == "kept" and [each["frame"] for each in document["filled"]] == [0, 1, 2, 3]
         assert document["fills"][0]["regions"][1] == {"at": [30.0, 30.0], "colour": list(RED)}
-        assert session.fills() == [Click(frame, at, pytest.approx(colour)) for frame, at, colour in CLICKS]
+        assert session.fills() == [own._replace(colour=pytest.approx(own.colour)) for own in CLICKS]
         assert session.filled().points.tobytes() == filled.points.tobytes()
 
 
@@ -161,7 +161,7 @@ def test_colours_have_names(film):
     clicks = [Click(0, (30, 30), RED, "coat"), Click(0, (60, 60), RED, "hair")]
     with opened(film) as session:
         filled = session.fill(clicks)
-        assert session.fills() == [Click(0, at, pytest.approx(colour), name) for _, at, colour, name in clicks]
+        assert session.fills() == [own._replace(colour=pytest.approx(own.colour)) for own in clicks]
         for frame in range(4):
             assert [region.name for region in filled.on(frame)] == ["coat", "hair"]
         # An error of painting brings the clicks back, with their names.
