@@ -18,6 +18,7 @@
 //! - [`relax`]: who is who, by neighbours
 //! - [`page`]: a drawing, and clicks that paint it
 //! - [`carry`](mod@carry): colours and numbers on the next drawing
+//! - [`change`]: a colour that becomes another one from a drawing on
 //! - [`confidence`]: how probable it is that a colour is right, by the [`evidence`]
 //! - [`outlines`]: painted regions as outlines with holes
 //! - [`thin`]: outlines with fewer points, the same for both sides of a border
@@ -66,6 +67,7 @@
 #![forbid(unsafe_code)]
 
 pub mod carry;
+pub mod change;
 pub mod confidence;
 pub mod evidence;
 pub mod layout;
@@ -82,6 +84,7 @@ pub mod shifts;
 pub mod thin;
 
 pub use carry::{Source, carry};
+pub use change::{Change, changes};
 pub use outlines::{Fill, fills};
 pub use outside::Gap;
 pub use page::{Click, Page, Paint};

@@ -131,6 +131,9 @@ impl<'a> Room<'a> {
             let nearest = own.min_by(|&a, &b| away(a, cell).total_cmp(&away(b, cell)));
             starts.extend(nearest.map(|at| summit(&self.depth, at)));
         }
+        // Clicks in one room need one look at it.
+        starts.sort_unstable();
+        starts.dedup();
         starts
     }
 

@@ -18,7 +18,7 @@ pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick};
 use super::holds::{Holds, Stretch};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
-use crate::fill::{Click, Gap, Page, Paint, Source, carry, fills};
+use crate::fill::{Change, Click, Gap, Page, Paint, Source, carry, changes, fills};
 use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
@@ -237,7 +237,7 @@ impl Painting<'_> {
 
     /// Paints the frames on one side of the model drawing. The frames with clicks are in the order in which they come.
     fn side(&mut self, model: Painted, clicks: &[&(usize, FillClicks)], side: Side) -> Result<(), PipelineError> {
-        let mut known = Known { key: model.clone(), next: None, last: model };
+        let mut known = Known { key: model.clone(), next: None, last: model, unsure: Vec::new() };
         for own in clicks {
             let frame = own.1.frame;
             if side.is_over(known.last.frame) {
@@ -247,11 +247,16 @@ impl Painting<'_> {
             let between = side.between(known.last.frame, frame);
             self.outward(&mut known, between)?;
             known.next = None;
-            known.last = self.mended(&known, own)?;
+            let (mended, changes) = self.mended(&known, own)?;
+            known.last = mended;
+            for change in changes {
+                self.change(&mut known, change);
+            }
             self.keep(&known.last);
             if known.last.paint.clicked() >= WHOLE {
                 known.last.paint.settle();
                 known.key = known.last.clone();
+                known.unsure.clear();
             }
         }
         let rest = side.between(known.last.frame, if side.ahead { side.end + 1 } else { side.end - 1 });
@@ -272,8 +277,19 @@ impl Painting<'_> {
         Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, in_vain))
     }
 
-    /// A frame painted by what is known beside it, and then by its own clicks.
-    fn mended(&mut self, known: &Known, clicks: &(usize, FillClicks)) -> Result<Painted, PipelineError> {
+    /// A colour becomes another one: the model drawing says so from here on, and what was not clicked on the last drawing has it too.
+    fn change(&mut self, known: &mut Known, change: Change) {
+        if change.whole {
+            known.last.paint.becomes(change, &mut self.next);
+            // The numbers of the model drawing are not written from here on.
+            known.key.paint.becomes(change, &mut self.next);
+        } else {
+            known.unsure.push(change.from);
+        }
+    }
+
+    /// A frame painted by what is known beside it, and then by its own clicks, and the colours that these have changed.
+    fn mended(&mut self, known: &Known, clicks: &(usize, FillClicks)) -> Result<(Painted, Vec<Change>), PipelineError> {
         let mut page = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
@@ -284,13 +300,16 @@ impl Painting<'_> {
             self.next = numbers;
             carried = carry(&known.sources(), &mut page, &mut self.next);
         }
+        let before = carried.clone();
         let (mut paint, missed) = match carried {
             Some(paint) => page.clicked(paint, &own, &mut self.next),
             None => page.painted(&own, self.palette.len(), &mut self.next),
         };
         let in_vain = InVain { missed, ..in_vain(&page, &mut paint, &own, gaps) };
         self.miss(clicks, &in_vain);
-        Ok(Painted { frame: clicks.1.frame, page: page.into(), paint })
+        let sources = [&known.key.paint, &known.last.paint];
+        let changes = before.map_or_else(Vec::new, |before| changes(&page, &before, &paint, &sources));
+        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, changes))
     }
 
     /// Paints frames one after the other, beginning beside the last painted one.
@@ -304,7 +323,8 @@ impl Painting<'_> {
             }
             let mut page = self.look(frame)?;
             match carry(&known.sources(), &mut page, &mut self.next) {
-                Some(paint) => {
+                Some(mut paint) => {
+                    known.unsure.iter().for_each(|&colour| paint.doubt_returns(colour, &known.last.paint));
                     known.last = Painted { frame, page: page.into(), paint };
                     self.keep(&known.last);
                 }
@@ -409,6 +429,8 @@ struct Known {
     next: Option<Painted>,
     /// The last painted one.
     last: Painted,
+    /// Colours that have become others in part.
+    unsure: Vec<usize>,
 }
 
 impl Known {

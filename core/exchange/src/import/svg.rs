@@ -337,7 +337,7 @@ mod tests {
         };
         // The outline of a region has another number of points on every frame.
         let outlines = (0..4).map(|frame| (frame, vec![corners(4 + frame as usize)])).collect();
-        let fills = [SvgFill { track: 5, outlines, colour: [1.0, 0.0, 0.0] }];
+        let fills = [SvgFill { track: 5, name: None, outlines, colour: [1.0, 0.0, 0.0] }];
         let stroke =
             |name: &str| SvgStroke { name: name.into(), points: [(1, corners(2))].into(), ..SvgStroke::default() };
         let strokes = [stroke("stroke 7"), stroke("frame -3 stroke 2")];

@@ -134,7 +134,7 @@ fn paper_that_is_not_clicked_stays_without_paint() {
 fn a_click_without_a_colour_keeps_a_region_without_paint() {
     let [_, red, _] = own_clicks();
     let hole = FillClick { colour: None, ..click((60.0, 75.0), BLUE) };
-    let mut film = Film::new(4, moving).clicked(&[(0, &[red, hole])]);
+    let mut film = Film::new(4, moving).clicked(&[(0, &[red.clone(), hole.clone()])]);
     film.fill().unwrap();
     for frame in 0..=4 {
         let x = 60.0 + 6.0 * f64::from(frame);
@@ -283,6 +283,31 @@ fn two_names_of_one_look_stay_two_colours() {
     assert_eq!(svg, [Some("coat".to_owned()), Some("hair".to_owned())]);
 }
 
+/// The moving box with its disc, and two squares on the right, of which the second one is hidden on frames 2 and 3.
+fn coat(frame: FrameNumber, p: Point) -> f64 {
+    let square = |y: f64| boxed(p, (178.0, y), (14.0, 14.0));
+    let second = if (2..4).contains(&frame) { 99.0 } else { square(120.0) };
+    moving(frame / 2, p).min(square(30.0)).min(second)
+}
+
+#[test]
+fn what_was_hidden_when_a_colour_changed_comes_back_in_the_new_one() {
+    let green = [0.0, 0.6, 0.2];
+    let squares = [click((178.0, 30.0), BLUE), click((178.0, 120.0), BLUE)];
+    let [paper, red, _] = own_clicks();
+    let yellow = click((60.0, 75.0), [1.0, 1.0, 0.0]);
+    let all = [vec![paper, red, yellow], squares.to_vec()].concat();
+    let mut film = Film::new(6, coat).clicked(&[(0, &all), (2, &[click((178.0, 30.0), green)])]);
+    film.fill().unwrap();
+    let colours = |film: &Film, y: f64| (0..=6).map(|f| film.at(f, (178.0, y)).unwrap().colour).collect::<Vec<_>>();
+    assert_eq!(colours(&film, 30.0), [BLUE, BLUE, green, green, green, green, green]);
+    assert_eq!(colours(&film, 120.0), [BLUE, BLUE, PAPER, PAPER, green, green, green]);
+    // A colour that the model drawing has mends a mistake, and says nothing of what is hidden.
+    let mut film = film.clicked(&[(0, &all), (2, &[click((178.0, 30.0), RED)])]);
+    film.fill().unwrap();
+    assert_eq!(colours(&film, 120.0)[4..], [BLUE; 3]);
+}
+
 #[test]
 fn corrections_hold_to_the_end_of_the_film() {
     let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
@@ -351,7 +376,8 @@ fn other_frames_and_the_document_stay() {
 
 #[test]
 fn a_number_has_one_colour_on_kept_frames_too() {
-    let clicks = |disc: Colour| [own_clicks()[0], own_clicks()[1], click((60.0, 75.0), disc)];
+    let [paper, red, _] = own_clicks();
+    let clicks = |disc: Colour| [paper.clone(), red.clone(), click((60.0, 75.0), disc)];
     let mut film = Film::new(3, moving).clicked(&[(0, &clicks(BLUE))]);
     film.fill().unwrap();
     // Another colour on the first frame, but only the last one is painted again.
