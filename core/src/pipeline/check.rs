@@ -4,7 +4,7 @@ use super::tween::{peg_of, spacing};
 use super::{PipelineError, gaps};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
-use crate::project::{Document, Problems};
+use crate::project::{Document, FieldError, Problems};
 use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
 use crate::track::rototoon::{WIDEST, too_wide};
 use crate::tween::peg::{self, PegError};
@@ -23,6 +23,9 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     problems.append(drawing_problems(document));
+    if let Err(error) = paint(document) {
+        problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
+    }
     for part in &document.scene.parts {
         for frame in part.outdated() {
             let place = format!("part {:?} keys.\"{frame}\"", part.name);
@@ -45,6 +48,13 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     }
     gaps::lines(&unreadable).into_iter().for_each(|line| problems.error("footage", line));
     Ok(problems)
+}
+
+/// The first invalid field of the document's paint.
+fn paint(document: &Document) -> Result<(), FieldError> {
+    document.fills()?;
+    document.filled()?;
+    Ok(())
 }
 
 /// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.
@@ -186,6 +196,16 @@ mod tests {
     fn said(fields: &Value) -> (Vec<String>, Vec<String>) {
         let problems = drawing_problems(&document(fields));
         (problems.errors().map(ToString::to_string).collect(), problems.warnings().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn paint_that_cannot_be_read_is_named() {
+        let told = |fields: Value| paint(&document(&fields)).err().map(|error| error.to_string());
+        let click = json!({"frame": 0, "regions": [{"at": [1, 1], "name": "coat"}]});
+        assert_eq!(told(json!({"palette": {"coat": [0, 0, 1]}, "fills": [click]})), None);
+        let expected = "fills[0] (frame 0).regions[0].name: found \"coat\", expected a name of the field palette, or a colour beside it";
+        assert_eq!(told(json!({"fills": [click]})).as_deref(), Some(expected));
+        assert!(told(json!({"palette": 7})).is_some_and(|told| told.starts_with("palette: found 7")));
     }
 
     fn good() -> Value {
