@@ -7,6 +7,7 @@ use rototoon::export::{Detail, Motion, SvgOptions, svg};
 use rototoon::import::too_large;
 use rototoon::pipeline::{self, Excerpt};
 use rototoon::project::output::check_writable;
+use rototoon::project::seen::Made;
 use rototoon::project::{Document, Inputs, write_whole};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, FramePattern};
@@ -115,6 +116,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     inputs.check(to)?;
     let whole = document.scene.footage.clone();
+    // Before frames are left out or get other numbers.
+    let changed = changed(given, &document)?;
     let mut document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
         let chosen =
@@ -142,8 +145,20 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
     let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
     let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
-    warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
+    warn(to, warnings.iter().flatten().chain(&changed));
     Ok(())
+}
+
+/// What is told of pictures that are others than when they were looked at.
+fn changed(given: &ArgMatches, document: &Document) -> Result<Vec<String>, Failure> {
+    let (from, asked) = (arguments::path(given, "project"), excerpt(given));
+    let draws = extension(given)? == "svg" && asked.parts.is_none();
+    let made = if draws { &Made::ALL[..] } else { &[Made::Tracks] };
+    Ok(pipeline::changed(document, &project::home(document, from), made, asked.frames.as_ref())?)
+}
+
+fn warn<'a>(to: &Path, warnings: impl Iterator<Item = &'a String>) {
+    warnings.for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
 }
 
 /// SVG of a document. Regions and strokes belong to no part.
@@ -174,11 +189,8 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern, inp
         Ok(write_whole(&pattern.path(number), drawn(given, &one, &options)?.as_bytes())?)
     };
     (complete.scene.footage.first..=complete.scene.footage.last).try_for_each(written)?;
-    let warnings = [
-        pipeline::left_out_of_shapes(&complete, "svg"),
-        pipeline::untracked(&complete.scene),
-        pipeline::outdated(&complete.scene),
-    ];
-    warnings.iter().flatten().for_each(|warning| line("warning", &format!("{}: {warning}", to.display())));
+    let (left_out, scene) = (pipeline::left_out_of_shapes(&complete, "svg"), &complete.scene);
+    let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene)];
+    warn(to, warnings.iter().flatten().chain(&changed(given, document)?));
     Ok(())
 }

@@ -5,6 +5,7 @@ use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline::{self, Picture, RenderJob};
 use rototoon::project::output::check_writable;
+use rototoon::project::seen::Made;
 use rototoon::render::form::{Bits, Form, Packing};
 use rototoon::render::{Format, OverlayOptions};
 use rototoon::scene::parameters::Stage;
@@ -98,7 +99,21 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
     let outdated = pipeline::outdated(&document.scene);
     let empty = pipeline::empty(&document, &job);
-    lacking.iter().chain(&outdated).chain(&empty).for_each(|warning| line("warning", &format!("{output}: {warning}")));
+    let made: Vec<Made> = [
+        (job.picture.shows_regions(), Made::Filled),
+        (job.picture.shows_strokes(), Made::Traced),
+        (!drawn, Made::Tracks),
+    ]
+    .into_iter()
+    .filter_map(|(shows, made)| shows.then_some(made))
+    .collect();
+    let changed = pipeline::changed(&document, &home, &made, job.frames.as_ref())?;
+    lacking
+        .iter()
+        .chain(&outdated)
+        .chain(&empty)
+        .chain(&changed)
+        .for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())
 }
 

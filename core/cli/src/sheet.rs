@@ -5,6 +5,7 @@ use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
+use rototoon::project::seen::Made;
 use rototoon::project::write_whole;
 use rototoon::render::{Format, encode};
 use rototoon::scene::parameters::Stage;
@@ -36,7 +37,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
     write_whole(to, &bytes)?;
-    if let Some(warning) = pipeline::outdated(&document.scene) {
+    let changed = pipeline::changed(&document, &home, &Made::ALL, None)?;
+    for warning in pipeline::outdated(&document.scene).iter().chain(&changed) {
         line("warning", &format!("{}: {warning}", from.display()));
     }
     Ok(())

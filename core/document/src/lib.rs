@@ -14,6 +14,7 @@
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
 //! - [`fills`]: clicks of a painter, and the painted regions of every frame
+//! - [`seen`]: which pictures results were made of
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`skeleton`]: which body the limbs or clips are of
 //! - [`curves`]: files of curves to fit
@@ -70,6 +71,7 @@ mod plain_clips;
 pub mod problem;
 pub mod save;
 pub mod schema;
+pub mod seen;
 mod shape;
 pub mod skeleton;
 pub mod traced;

@@ -27,6 +27,7 @@ const OTHERS: [&str; 15] = [
     "filled",
     "palette",
     "clips",
+    "seen",
 ];
 
 impl Document {

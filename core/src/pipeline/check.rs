@@ -1,9 +1,10 @@
 //! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
 use super::tween::{peg_of, spacing};
-use super::{PipelineError, gaps};
+use super::{PipelineError, changed, gaps};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
+use crate::project::seen::Made;
 use crate::project::{Document, FieldError, Problems};
 use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
 use crate::track::rototoon::{WIDEST, too_wide};
@@ -47,6 +48,11 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
     }
     gaps::lines(&unreadable).into_iter().for_each(|line| problems.error("footage", line));
+    match changed(document, folder, &Made::ALL, None) {
+        Ok(lines) => lines.into_iter().for_each(|line| problems.warning("footage", line)),
+        Err(PipelineError::Field(wrong)) => problems.error("seen", wrong),
+        Err(other) => return Err(other),
+    }
     Ok(problems)
 }
 

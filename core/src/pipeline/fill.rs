@@ -16,6 +16,7 @@ mod told;
 pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick};
 
 use super::holds::{Holds, Stretch};
+use super::seen::Noted;
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
 use crate::fill::{Change, Click, Gap, Page, Paint, Source, carry, changes, fills};
@@ -23,6 +24,7 @@ use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion, Hue};
+use crate::project::seen::Made;
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
@@ -64,9 +66,11 @@ pub fn fill(
     super::memory::to_fill(footage)?;
     let earlier = document.filled().map_err(|error| field(&error))?;
     let sequence = frames(document, folder)?;
+    let noted = Noted::new(&sequence);
     let mut painting = Painting {
         frames: &sequence,
-        holds: Holds::none(&sequence),
+        noted: &noted,
+        holds: Holds::none(&noted),
         options,
         progress,
         palette: palette(&clicks),
@@ -89,6 +93,7 @@ pub fn fill(
     report.frames.retain(|frame| range.contains(&frame.frame));
     report.frames.sort_by_key(|frame| frame.frame);
     report.mark_bare();
+    document.set_seen(Made::Filled, range, &noted.seen()).map_err(|error| field(&error))?;
     document.set_filled(&found);
     Ok(report)
 }
@@ -180,6 +185,8 @@ struct InVain {
 /// Painting at work.
 struct Painting<'a> {
     frames: &'a Sequence,
+    /// The same, which notes the pictures that are read.
+    noted: &'a Noted<'a>,
     /// Which frames hold a drawing.
     holds: Holds<'a>,
     options: &'a FillOptions,
@@ -205,7 +212,7 @@ impl Painting<'_> {
         self.all = self.done + looked_at.clone().count() + clicks.len();
         let done = self.share();
         let search = Stretch { progress: self.progress, step: "Painting", from: done, to: done };
-        self.holds = Holds::of(self.frames, self.frames.footage().first, &looked_at, &search)?;
+        self.holds = Holds::of(self.noted, self.frames.footage().first, &looked_at, &search)?;
         self.miss(&clicks[model], &missed);
         self.keep(&key);
         let before: Vec<_> = clicks[..model].iter().rev().collect();
@@ -339,7 +346,7 @@ impl Painting<'_> {
 
     fn look(&mut self, frame: FrameNumber) -> Result<Page, PipelineError> {
         self.progress()?;
-        Ok(Page::new(self.frames.picture(frame)?, &self.options.lines))
+        Ok(Page::new(self.noted.picture(frame)?, &self.options.lines))
     }
 
     fn progress(&mut self) -> Result<(), PipelineError> {

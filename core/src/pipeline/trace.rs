@@ -10,15 +10,18 @@ pub use kept::TraceMemory;
 pub use on_keys::trace_drawings;
 
 use super::holds::{Holds, SHARE, Stretch};
+use super::seen::Noted;
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::lines::{Drawing, Key, Options, Shown, Stroke, Tracked, between, carry, is_same};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
+use crate::project::seen::Made;
 use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use blake3::Hash;
-use kept::{Numbers, Span, of_picture};
+pub(super) use kept::of_picture;
+use kept::{Numbers, Span};
 use known::{Known, beside, renamed};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -80,7 +83,8 @@ pub fn trace(
     let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
     let search = Stretch { progress, step: "Tracing", from: 0.0, to: SHARE };
-    let holds = Holds::of(&sequence, footage.first, &looked_at(&beside, &range), &search)?;
+    let noted = Noted::new(&sequence);
+    let holds = Holds::of(&noted, footage.first, &looked_at(&beside, &range), &search)?;
     let all = looks(&drawn, &beside, &range, &holds);
     let mut tracing = Tracing {
         frames: &holds,
@@ -98,6 +102,7 @@ pub fn trace(
     let mut found = tracing.all(&range, &beside)?;
     found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
     found.sort_by_key(|drawing| drawing.frame);
+    document.set_seen(Made::Traced, range, &noted.seen()).map_err(|error| wrong(&error))?;
     document.set_traced(&found);
     Ok(())
 }

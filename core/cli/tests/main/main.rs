@@ -15,6 +15,7 @@ mod fit;
 mod inputs;
 mod plates;
 mod season;
+mod seen;
 mod style;
 mod style_reshape;
 mod trace;

@@ -82,6 +82,8 @@ impl Document {
     pub fn conformed(&self, conform: &Conform, footage: Footage) -> Result<(Self, Vec<Note>), FieldError> {
         let (mut moved, mut notes) = (self.clone(), Vec::new());
         moved.scene.footage = footage;
+        // Results go with their drawings, and the pictures of these are other ones now.
+        moved.forget_seen();
         moved.scene.parts = self.scene.parts.iter().map(|part| part::moved(part, conform, &mut notes)).collect();
         drawn::moved(&mut moved, conform, &mut notes)?;
         Ok((moved, notes))

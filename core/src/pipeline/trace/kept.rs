@@ -179,7 +179,7 @@ impl Key {
 }
 
 /// The hash of a picture.
-pub(super) fn of_picture(picture: &Raster<Colour>) -> Hash {
+pub(in super::super) fn of_picture(picture: &Raster<Colour>) -> Hash {
     let mut hasher = Hasher::new();
     hasher.update(&(picture.width() as u64).to_le_bytes());
     let mut bytes = Vec::new();
