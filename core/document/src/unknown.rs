@@ -11,7 +11,7 @@ use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 15] = [
+const OTHERS: [&str; 16] = [
     "drawings",
     "pairs",
     "pegs",
