@@ -80,9 +80,9 @@ fn extension(given: &ArgMatches) -> Result<String, Failure> {
     Ok(extension)
 }
 
-/// The pattern of files for each frame; `None` where all frames go into one file.
+/// The pattern of the names of files for each frame; `None` where all frames go into one file. Percent signs of folders are themselves.
 fn pattern(to: &Path) -> Option<FramePattern> {
-    FramePattern::parse(to.to_str()?).ok()
+    FramePattern::parse(to.file_name()?.to_str()?).ok()
 }
 
 /// How far Bézier curves may be from snapped paths; `None` for points with straight sides.
@@ -179,14 +179,15 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern, inp
     if let Some(nothing) = pipeline::nothing_for(&complete, "svg") {
         return Err(Failure::Other(format!("{}: {nothing}", from.display())));
     }
-    (named.first..=named.last).try_for_each(|number| inputs.check(&pattern.path(number)))?;
-    check_writable(&pattern.path(named.first))?;
+    let file = |number| to.with_file_name(pattern.path(number));
+    (named.first..=named.last).try_for_each(|number| inputs.check(&file(number)))?;
+    check_writable(&file(named.first))?;
     let options =
         SvgOptions { motion: Motion::Hold, spacing: arguments::number(given, "spacing"), bezier: bezier(given) };
     let written = |frame: FrameNumber| -> Result<(), Failure> {
         let one = of(&Excerpt { frames: Some(frame..=frame), offset: 0, parts: asked.parts.clone() })?;
         let number = frame - complete.scene.footage.first + named.first;
-        Ok(write_whole(&pattern.path(number), drawn(given, &one, &options)?.as_bytes())?)
+        Ok(write_whole(&file(number), drawn(given, &one, &options)?.as_bytes())?)
     };
     (complete.scene.footage.first..=complete.scene.footage.last).try_for_each(written)?;
     let (left_out, scene) = (pipeline::left_out_of_shapes(&complete, "svg"), &complete.scene);

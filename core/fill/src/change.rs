@@ -104,7 +104,9 @@ mod tests {
 
     /// Three rooms side by side and the rest; colours by region.
     fn rooms(colours: [usize; 4]) -> (Layout, Paint) {
-        let ink = |x: usize, y: usize| y.abs_diff(50) == 20 && x < 91 || x % 30 == 0 && x <= 90 && y.abs_diff(50) <= 20;
+        let ink = |x: usize, y: usize| {
+            y.abs_diff(50) == 20 && x < 91 || x.is_multiple_of(30) && x <= 90 && y.abs_diff(50) <= 20
+        };
         let layout = Layout::new(&Regions::new(&Raster::from_fn(120, 100, ink)));
         assert_eq!(layout.figures.len(), 5);
         let mut paint = Paint::nothing(4, 5);

@@ -9,6 +9,7 @@
 //! if what it parts from the region is [what leaked](crate::piece).
 
 use crate::layout::Layout;
+use crate::levels::{GAP, levels};
 use crate::page::Paint;
 use crate::piece::has_leaked;
 use crate::regions::summit;
@@ -16,10 +17,9 @@ use crate::shifts::Shifts;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;
 use rototoon_lines::ink::distance;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
-/// Half the width of the widest gap, in pixels at 540 lines: of any gap, and of one that parts what leaked.
-pub(crate) const GAP: f64 = 5.0;
+/// Half the width of the widest gap that parts what leaked, in pixels at 540 lines.
 const WIDE: f64 = 10.0;
 /// Depth of a gap, as a share of that of the shallower end: of any gap, and of one that parts what leaked.
 const NARROW: f32 = 0.5;
@@ -126,28 +126,6 @@ fn deepest(depth: &Raster<f32>, seen: &Raster<u32>) -> BTreeMap<usize, Deep> {
         }
     }
     deepest
-}
-
-/// For each cell the depth of the shallowest cell on the deepest way to it from a start; 0 where there is no way.
-pub(crate) fn levels(depth: &Raster<f32>, start: usize) -> Vec<f32> {
-    let (width, height) = (depth.width(), depth.height());
-    let mut levels = vec![0.0f32; width * height];
-    // Depths are ordered by their bits, since they are positive.
-    let mut front = BinaryHeap::from([(depth.data()[start].to_bits(), start)]);
-    while let Some((level, at)) = front.pop() {
-        let level = f32::from_bits(level);
-        if levels[at] >= level {
-            continue;
-        }
-        levels[at] = level;
-        for next in crate::regions::sides(at, width, height) {
-            let way = level.min(depth.data()[next]);
-            if way > levels[next] {
-                front.push((way.to_bits(), next));
-            }
-        }
-    }
-    levels
 }
 
 #[cfg(test)]

@@ -72,6 +72,7 @@ pub mod confidence;
 pub mod evidence;
 pub mod layout;
 pub mod leaks;
+mod levels;
 pub mod meet;
 pub mod outlines;
 pub mod outside;

@@ -25,7 +25,7 @@
 //! must click once more, into the paper: two clicks of one colour on both sides of a gap keep the region whole.
 
 use crate::layout::Layout;
-use crate::leaks::{GAP, levels};
+use crate::levels::{GAP, levels};
 use crate::regions::{flood, sides, summit};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Raster;

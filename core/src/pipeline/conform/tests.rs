@@ -82,7 +82,7 @@ fn an_offset_needs_no_old_pictures() {
     let scene = &conformed.document.scene;
     assert_eq!((scene.footage.fps, scene.parts[0].keys[&106][0]), (25.0, Point::new(97.5, 54.0)));
     let error = conform(&document(), folder.path(), &new(folder.path()), &Silent).unwrap_err();
-    assert!(matches!(error, PipelineError::Gaps { .. }), "{error}");
+    assert!(matches!(error, PipelineError::Footage { which: "old", .. }), "{error}");
 }
 
 #[test]
