@@ -9,7 +9,7 @@ use crate::strokes::Walked;
 use crate::{centre, economy, finish, ink, sketch, strokes};
 use rayon::prelude::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rototoon_base::scene::{Colour, Raster};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A picture of which the ink is known.
 pub struct Drawing {
@@ -23,6 +23,8 @@ pub struct Drawing {
     pub(crate) darkness: Option<(Raster<f32>, f32)>,
     rough: bool,
     outside: Outside,
+    /// The strokes before they are fitted, once they were asked for.
+    lines: OnceLock<Vec<Walked>>,
 }
 
 impl Drawing {
@@ -55,13 +57,12 @@ impl Drawing {
         graph.branches.par_iter_mut().for_each(|branch| centre::centred(branch, &ink.darkness));
         graph.add_solids(solids.map(|solids| solids.outlines).unwrap_or_default());
         let darkness = (!rough).then_some((ink.darkness, ink.darkest));
-        Self { picture, graph, width, unit, darkness, rough, outside }
+        Self { picture, graph, width, unit, darkness, rough, outside, lines: OnceLock::new() }
     }
 
     /// The strokes of the drawing.
     pub fn strokes(&self) -> Vec<Stroke> {
-        let kept = self.lines();
-        kept.par_iter().map(|line| self.finished(line)).collect()
+        self.lines().par_iter().map(|line| self.finished(line)).collect()
     }
 
     /// The stroke of a line on this drawing.
@@ -70,7 +71,11 @@ impl Drawing {
     }
 
     /// The strokes before they are fitted.
-    pub(crate) fn lines(&self) -> Vec<Walked> {
+    pub(crate) fn lines(&self) -> &[Walked] {
+        self.lines.get_or_init(|| self.walked())
+    }
+
+    fn walked(&self) -> Vec<Walked> {
         let colours: Vec<Colour> =
             self.graph.branches.par_iter().map(|branch| finish::colour(&branch.points, &self.picture)).collect();
         let stub = economy::stub(self.width, self.unit);

@@ -37,7 +37,7 @@ const MOST: usize = 8;
 const GAP_WIDTHS: f64 = 2.5;
 const GAP_PIXELS: f64 = 2.0;
 /// Largest turn at each end of a gap, in radians.
-const GAP_TURN: f64 = 0.6;
+pub const GAP_TURN: f64 = 0.6;
 /// Two lines that cross at a sharp angle run together for at most this many widths.
 const TOGETHER: f64 = 5.0;
 /// Largest sum of the turns of two such lines, in radians.
@@ -182,7 +182,7 @@ impl Pairing {
             let near = |b: &&(End, Point, Point, f64)| b.1.x - a.1.x <= 2.0 * GAP_WIDTHS * widest + GAP_PIXELS;
             for b in ends[i + 1..].iter().take_while(near).filter(|b| b.0.0 != a.0.0) {
                 let way = b.1 - a.1;
-                let reach = 2.0 * GAP_WIDTHS * a.3.min(b.3) + GAP_PIXELS + a.3 + b.3;
+                let reach = gap(2.0 * a.3.min(b.3)) + (a.3 - b.3).abs();
                 let turn = angle(a.2, way).max(angle(b.2, -way));
                 if way.length() <= reach && turn < GAP_TURN {
                     found.push((turn + way.length() / reach, a.0, b.0));
@@ -196,6 +196,11 @@ impl Pairing {
             }
         }
     }
+}
+
+/// The longest gap of a pen between the middles of lines of this width, which is joined.
+pub fn gap(width: f64) -> f64 {
+    (GAP_WIDTHS + 1.0) * width + GAP_PIXELS
 }
 
 /// Whether a branch ends free and is short.

@@ -24,7 +24,7 @@ pub(super) use kept::of_picture;
 use kept::{Numbers, Span};
 use known::{Known, beside, renamed};
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
@@ -131,6 +131,8 @@ struct Place {
     ink: Option<Drawing>,
     drawn: Vec<Tracked>,
     beside: Vec<Tracked>,
+    /// The numbers of strokes that an artist drew.
+    by_hand: BTreeSet<usize>,
 }
 
 impl Place {
@@ -186,7 +188,11 @@ impl Tracing<'_> {
     /// The place of a drawing outside of the range.
     fn known(&mut self, known: &Known) -> Place {
         let drawn = known.tracked(self.unit, &mut self.next);
-        Place { frame: known.frame, ink: None, drawn, beside: Vec::new() }
+        let mut by_hand = known.by_hand.clone();
+        if known.is_drawn() {
+            by_hand.extend(drawn.iter().map(|stroke| stroke.track));
+        }
+        Place { frame: known.frame, ink: None, drawn, beside: Vec::new(), by_hand }
     }
 
     /// Carries the strokes of a place up to a drawing behind the range, whose numbers those take that are not below `new`.
@@ -208,9 +214,10 @@ impl Tracing<'_> {
         let sure = |strokes: Vec<Stroke>| -> Vec<Tracked> {
             numbers.zip(strokes).map(|(track, stroke)| Tracked::sure(track, stroke)).collect()
         };
-        let mut place = Place { frame, ink: None, drawn: Vec::new(), beside: Vec::new() };
+        let mut place = Place { frame, ink: None, drawn: Vec::new(), beside: Vec::new(), by_hand: BTreeSet::new() };
         if let Some(drawing) = drawing {
             place.drawn = sure(of_drawing(drawing));
+            place.by_hand = place.drawn.iter().map(|stroke| stroke.track).collect();
         } else {
             let key = self.key("first", &[], &[frame], &[])?;
             let numbers = Numbers::new([], self.next);
@@ -238,7 +245,8 @@ impl Tracing<'_> {
         let (all, next) = (place.all(), self.next);
         let numbers = Numbers::new(&all, next);
         let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).collect();
-        let key = self.key("outward", &[&numbers.ranked(&all)], &looked, &[])?;
+        let by_hand = of_numbers(&all, &place.by_hand);
+        let key = self.key("outward", &[&numbers.ranked(&all), &numbers.ranked(&by_hand)], &looked, &[])?;
         if let Some(span) = self.recall(key) {
             self.next += span.new;
             self.done += frames.len();
@@ -248,6 +256,7 @@ impl Tracing<'_> {
         let first = self.ink(place)?;
         let mut shown = Shown::default();
         shown.learn(&all, &first);
+        shown.learn_drawn(place.by_hand.iter().copied());
         let mut before: Option<Drawing> = None;
         let (mut last, mut seen) = (all.clone(), all);
         let mut drawings = Vec::new();
@@ -260,7 +269,8 @@ impl Tracing<'_> {
                 // It has the same strokes, also those of the artist that lie off the ink, and those that the artist did not draw.
                 seen.extend(last.iter().filter(|stroke| stroke.track >= new).cloned());
             } else {
-                seen = shown.of(&last, &drawing);
+                let own = shown.traced(&mut last, &drawing, &mut self.next);
+                seen = own.into_iter().map(|(_, stroke)| stroke).collect();
             }
             drawings.push(numbers.ranked(&seen));
             found.push((frame, seen.clone()));
@@ -284,7 +294,8 @@ impl Tracing<'_> {
         let numbers = Numbers::new(place.drawn.iter().chain(&place.beside), self.next);
         let before = [numbers.ranked(&place.drawn), numbers.ranked(&place.beside)];
         let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).chain([to]).collect();
-        let key = self.key("between", &[&before[0], &before[1]], &looked, &drawn)?;
+        let by_hand = numbers.ranked(&of_numbers(&place.all(), &place.by_hand));
+        let key = self.key("between", &[&before[0], &before[1], &by_hand], &looked, &drawn)?;
         if let Some(span) = self.recall(key) {
             self.next += span.new;
             self.done += 2 * frames.len() + 1;
@@ -292,10 +303,11 @@ impl Tracing<'_> {
             found.extend(frames.into_iter().zip(&mut drawings));
             let drawn = drawings.next().unwrap_or_default();
             found.push((to, drawn.clone()));
-            return Ok(Place { frame: to, ink: None, drawn, beside: numbers.numbered(&span.beside) });
+            let by_hand = place.by_hand.into_iter().chain(drawn.iter().map(|s| s.track)).collect();
+            return Ok(Place { frame: to, ink: None, drawn, beside: numbers.numbered(&span.beside), by_hand });
         }
         let drawing = self.ink(&mut place)?;
-        let first = Key { drawing, drawn: place.drawn, beside: place.beside };
+        let first = Key { drawing, drawn: place.drawn, beside: place.beside, by_hand: place.by_hand };
         let mut next = self.next;
         let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to));
         let (drawings, second) = between(&first, frames.len(), &mut look, drawn, &mut next)?;
@@ -306,8 +318,8 @@ impl Tracing<'_> {
         self.keep(key, || Span { drawings: ranked, beside, new });
         found.extend(frames.into_iter().zip(drawings));
         found.push((to, second.drawn.clone()));
-        let Key { drawing, drawn, beside } = second;
-        Ok(Place { frame: to, ink: Some(drawing), drawn, beside })
+        let Key { drawing, drawn, beside, by_hand } = second;
+        Ok(Place { frame: to, ink: Some(drawing), drawn, beside, by_hand })
     }
 
     /// The key of a span, if spans are kept.
@@ -401,6 +413,11 @@ fn looks(drawn: &[&Drawn], beside: &[Option<Known>; 2], range: &RangeInclusive<F
     let places: Vec<FrameNumber> = outside[0].into_iter().chain(inner).chain(outside[1]).collect();
     let twice: usize = places.windows(2).map(|pair| (pair[0] + 1..pair[1]).filter(begun).count()).sum();
     looked_at(beside, range).filter(begun).count() + twice
+}
+
+/// The strokes with these numbers.
+fn of_numbers(strokes: &[Tracked], numbers: &BTreeSet<usize>) -> Vec<Tracked> {
+    strokes.iter().filter(|stroke| numbers.contains(&stroke.track)).cloned().collect()
 }
 
 /// The strokes of a drawing.

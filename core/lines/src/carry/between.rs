@@ -39,6 +39,8 @@ pub struct Key {
     pub drawn: Vec<Tracked>,
     /// Strokes that began on the way here and that the artist did not draw. They are not on this drawing, but go on behind it.
     pub beside: Vec<Tracked>,
+    /// The numbers of strokes that an artist drew here or on a key before.
+    pub by_hand: BTreeSet<usize>,
 }
 
 impl Key {
@@ -81,11 +83,14 @@ pub fn between<E>(
     let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
     let mut shown = Shown::default();
     shown.learn(&first.drawn, &first.drawing);
+    shown.learn_drawn(first.by_hand.iter().copied());
     let drawn = identify_seen(&shown.of(&came, &drawing), &came, drawn, drawing.unit, next);
     shown.learn(&drawn, &drawing);
+    shown.learn_drawn(drawn.iter().map(|s| s.track));
     let began = came.into_iter().filter(|s| !known.contains(&s.track)).collect();
     let beside = bind([drawn.clone(), began], &drawing).strokes.split_off(drawn.len());
-    let second = Key { drawing, drawn, beside };
+    let by_hand = first.by_hand.iter().copied().chain(drawn.iter().map(|s| s.track)).collect();
+    let second = Key { drawing, drawn, beside, by_hand };
     let late = Late { next, numbers: BTreeSet::new(), lost: BTreeMap::new(), strokes: Vec::new() };
     let found = Vec::with_capacity(count);
     let mut back = Backwards { known: &known, first: &first.drawing, second, found, shown, seen: Vec::new(), late };
@@ -162,12 +167,12 @@ impl Backwards<'_> {
     }
 
     /// Adds the strokes of a drawing.
-    fn add(&mut self, strokes: Vec<Tracked>, drawing: &Drawing) {
+    fn add(&mut self, mut strokes: Vec<Tracked>, drawing: &Drawing) {
         // What is the picture of a key has its strokes, which may lie off the ink.
         let is_key = is_same(drawing, self.first) || is_same(drawing, &self.second.drawing);
         self.seen.push(match is_key {
             true => strokes.iter().cloned().enumerate().collect(),
-            false => self.shown.with_places(&strokes, drawing),
+            false => self.late.own(&self.shown, &mut strokes, drawing),
         });
         self.found.push(strokes);
     }
@@ -196,6 +201,15 @@ impl Backwards<'_> {
 }
 
 impl Late<'_> {
+    /// The strokes that a drawing shows, as its own lines. Those of nobody are added to `strokes`, and go on.
+    fn own(&mut self, shown: &Shown, strokes: &mut Vec<Tracked>, drawing: &Drawing) -> Vec<(usize, Tracked)> {
+        let known = strokes.len();
+        let seen = shown.traced(strokes, drawing, self.next);
+        self.numbers.extend(strokes[known..].iter().map(|stroke| stroke.track));
+        self.strokes = strokes.iter().filter(|stroke| self.numbers.contains(&stroke.track)).cloned().collect();
+        seen
+    }
+
     /// Adds the lines that lost their numbers, and what nobody explains, to the strokes of a drawing. `second` says whether the first side
     /// came from the second key.
     fn add(&mut self, bound: Bound, second: bool, drawing: &Drawing) -> Vec<Tracked> {
@@ -212,7 +226,7 @@ impl Late<'_> {
         }
         let reach = EXPLAINS * drawing.unit + 0.5 * drawing.width;
         let least = LONG * drawing.unit + drawing.width;
-        for rest in rest::left(&drawing.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, least) {
+        for rest in rest::left(drawing.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, least) {
             strokes.push(Tracked::sure(*self.next, drawing.finished(&rest)));
             self.numbers.insert(*self.next);
             *self.next += 1;

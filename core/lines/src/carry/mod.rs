@@ -21,6 +21,9 @@ mod confidence;
 mod context;
 mod follow;
 mod identify;
+mod labels;
+mod own;
+mod pieces;
 mod register;
 mod rest;
 mod rivals;
@@ -79,7 +82,7 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
     let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
     let reach = EXPLAINS * unit + 0.5 * to.width;
     if is_same(from, to) {
-        let rests = rest::left(&to.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, NEW * unit);
+        let rests = rest::left(to.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, NEW * unit);
         return (strokes, rests);
     }
     let registered = register::register(from, &strokes, to);
@@ -109,7 +112,7 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
         numbers.push((k, laid.signs));
         lines.push((laid.points, laid.closed));
     }
-    let rests = rest::left(&to.lines(), &covered(lines.iter().map(of_line), reach), reach, NEW * unit);
+    let rests = rest::left(to.lines(), &covered(lines.iter().map(of_line), reach), reach, NEW * unit);
     let rests = rest::lengthened(&mut lines, rests, reach);
     let shared = confidence::shared(&lines.iter().map(of_line).collect::<Vec<_>>(), reach);
     for ((own, shared), line) in numbers.iter_mut().zip(shared).zip(&lines) {

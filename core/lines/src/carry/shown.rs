@@ -45,6 +45,8 @@ const MOST: f64 = 0.75;
 #[derive(Debug, Default)]
 pub struct Shown {
     together: BTreeSet<(usize, usize)>,
+    /// The strokes that an artist drew.
+    drawn: BTreeSet<usize>,
 }
 
 /// A stroke that claims ink.
@@ -59,7 +61,7 @@ struct Claim {
 }
 
 /// Points along shown strokes, with the place of each one's stroke.
-struct Cover {
+pub(super) struct Cover {
     points: Vec<(Point, usize)>,
     cells: Cells,
     reach: f64,
@@ -73,6 +75,19 @@ impl Shown {
             let close = others.into_iter().filter(|&(_, share)| share > TOGETHER);
             self.together.extend(close.map(|(other, _)| pair(strokes[k].track, strokes[other].track)));
         }
+    }
+
+    /// Learns which strokes an artist drew. Their division of lines is respected.
+    pub fn learn_drawn(&mut self, tracks: impl IntoIterator<Item = usize>) {
+        self.drawn.extend(tracks);
+    }
+
+    pub(super) fn is_drawn(&self, track: usize) -> bool {
+        self.drawn.contains(&track)
+    }
+
+    pub(super) fn is_together(&self, a: &Tracked, b: &Tracked) -> bool {
+        self.together.contains(&pair(a.track, b.track))
     }
 
     /// The strokes that a drawing shows, as far as it shows them.
@@ -250,7 +265,7 @@ impl Cover {
     }
 
     /// The middle of a drawing's ink.
-    fn of_ink(drawing: &Drawing) -> Self {
+    pub(super) fn of_ink(drawing: &Drawing) -> Self {
         let mut cover = Self::new(ON * drawing.unit + 0.5 * drawing.width);
         let places = of_ink(drawing, 0.5 * cover.reach, false);
         places.into_iter().for_each(|sample| cover.push(sample.place, 0));
@@ -278,8 +293,13 @@ impl Cover {
         self.points.iter_mut().filter(|(_, of)| *of == own).for_each(|(p, _)| *p = Point::splat(f64::NAN));
     }
 
+    /// Distance in which a point is explained.
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
     /// Whether a stroke of these explains a point.
-    fn explains(&self, p: Point, of: impl Fn(usize) -> bool) -> bool {
+    pub(super) fn explains(&self, p: Point, of: impl Fn(usize) -> bool) -> bool {
         let near = |k: usize| self.points[k].0.distance(p) <= self.reach && of(self.points[k].1);
         self.cells.near(p, self.reach).any(near)
     }

@@ -26,7 +26,8 @@ fn check(name: &str, character: Character, manner: Manner) {
     let ink = |drawing: u32| look(&at(drawing), manner, drawing);
     let parts = at(0);
     let known = strokes(&parts);
-    let first = Key { drawing: ink(0), drawn: drawn(&parts, &known), beside: Vec::new() };
+    let first =
+        Key { drawing: ink(0), drawn: drawn(&parts, &known), beside: Vec::new(), by_hand: (0..known.len()).collect() };
     let share = |drawing: u32, now: &[Tracked]| right(now, &at(drawing), &known, reach(manner));
 
     let (mut from, mut now, mut next) = (ink(0), first.all(), 1000);

@@ -18,12 +18,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// A drawing outside of the range whose strokes are known.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Known<'a> {
     /// Its frame.
     pub frame: FrameNumber,
     drawn: Option<&'a Drawn>,
     traced: Option<&'a TracedDrawing>,
+    /// The numbers that strokes have where an artist drew.
+    pub by_hand: BTreeSet<usize>,
 }
 
 impl Known<'_> {
@@ -34,6 +36,11 @@ impl Known<'_> {
             (None, Some(traced)) => traced.strokes.iter().map(|stroke| of_traced(stroke).stroke).collect(),
             (None, None) => Vec::new(),
         }
+    }
+
+    /// Whether an artist drew it.
+    pub fn is_drawn(&self) -> bool {
+        self.drawn.is_some()
     }
 
     /// Its strokes with their numbers. What the artist drew since the earlier run has numbers from `next` on, which is raised. `unit` is
@@ -60,7 +67,10 @@ pub(super) fn beside<'a>(
     for drawing in traced.iter().filter(|drawing| !drawing.strokes.is_empty()) {
         all.entry(drawing.frame).or_default().traced = Some(drawing);
     }
-    let of = |(&frame, known): (&FrameNumber, &Known<'a>)| Known { frame, ..*known };
+    let is_drawn = |known: &&Known| known.drawn.is_some();
+    let strokes = all.values().filter(is_drawn).filter_map(|known| known.traced).flat_map(|traced| &traced.strokes);
+    let by_hand: BTreeSet<usize> = strokes.map(|stroke| stroke.track).collect();
+    let of = |(&frame, known): (&FrameNumber, &Known<'a>)| Known { frame, by_hand: by_hand.clone(), ..known.clone() };
     [all.range(..range.start()).next_back().map(of), all.range(range.end() + 1..).next().map(of)]
 }
 
