@@ -135,7 +135,7 @@ mod tests {
         let at = |x: f64, y: f64| Point::new(x, y);
         let strokes =
             [(at(0.0, 1.0), at(50.0, 1.0)), (at(50.0, 0.0), at(100.0, 0.0)), (at(20.0, -30.0), at(20.0, 30.0))];
-        let runs = labels(&strokes).runs(&line(at(0.0, 0.0), at(140.0, 0.0)));
+        let runs = labels(&strokes).runs(&line(at(0.0, 0.0), at(200.0, 0.0)));
         assert_eq!(runs.iter().map(|run| run.stroke).collect::<Vec<_>>(), [Some(0), Some(1), None]);
         assert!(runs[0].points.end.abs_diff(50) <= 4 && runs[1].points.end.abs_diff(102) <= 4, "{runs:?}");
     }
