@@ -44,7 +44,7 @@ impl Guide {
         let (mut whole, open): (Vec<Walked>, Vec<Walked>) = pieces.into_iter().partition(|piece| piece.closed);
         whole.sort_by(|a, b| b.length().total_cmp(&a.length()));
         if whole.first().is_some_and(|ring| ring.length() >= longest) {
-            let ring = self.from_start(whole.remove(0));
+            let ring = self.begun(whole.remove(0));
             return (Some(ring), whole.into_iter().chain(open).collect());
         }
         let joins =
@@ -61,7 +61,7 @@ impl Guide {
         let open = last.piece.points[last.piece.points.len() - 1].distance(first.piece.points[0]);
         let is_ring = self.closed && open <= RING * length(&chain) && joins(last, first);
         let joined = joined(chain.into_iter().map(|own| own.piece).collect(), is_ring);
-        (Some(if joined.closed { self.from_start(joined) } else { joined }), whole)
+        (Some(if joined.closed { self.begun(joined) } else { joined }), whole)
     }
 
     /// Whether a piece lies behind another one.
@@ -122,7 +122,7 @@ impl Guide {
     }
 
     /// A ring that begins where the stroke does and has its direction. If the stroke is open, so is the ring.
-    fn from_start(&self, ring: Walked) -> Walked {
+    fn begun(&self, ring: Walked) -> Walked {
         let mut ring = self.placed(ring).piece;
         let start = self.samples[0].place;
         let far = |k: &usize| ring.points[*k].distance_squared(start);
