@@ -1,0 +1,125 @@
+"""Clicks that leak, clicks without paint, and colours that are their materials, with the real library."""
+
+import json
+
+import bpy
+import line_shots as ls
+import pytest
+from line_stage import attribute, film, kinds, pictures, said  # noqa: F401 - fixtures
+from shots import write_png
+from test_paint import EYE, LAYER, PAPER, SKIN, click, clicked, colour_at, painted, places, read  # noqa: F401 - fixtures
+
+pytestmark = pytest.mark.long
+
+
+def gapped(folder, rows):
+    """The film with a gap of some rows in the left side of the body. Returns its active object."""
+    first = ls.draw_sequence(folder)
+    for number, path in enumerate(sorted(folder.glob(f"*{first.suffix}"))):
+        picture = ls.picture(number).copy()
+        left = int((90 + 4 * number) * ls.SCALE)
+        picture[91 - rows // 2 : 91 + (rows + 1) // 2, left - 6 : left + 7] = ls.PAPER
+        write_png(path, picture)
+    return ls.set_up(first)
+
+
+def test_a_click_that_leaks_is_told_at_once(addon, library, tmp_path):
+    (_, (body, _), *_) = places(1)
+    for name, rows in (("narrow", 2), ("wide", 14)):
+        (tmp_path / name).mkdir()
+        ob = gapped(tmp_path / name, rows)
+        click(ob, body, SKIN)
+        told = said(addon)
+        assert told.kind == "WARNING" and "gap of about" in told.text, told.text
+        flooded = colour_at(addon, ob, 1, (8, 8)) is not None
+        assert flooded == (name == "wide")
+        assert ("up to the picture's edge" in told.text) == flooded, told.text
+        if flooded:
+            ob.rototoon.fill_nothing = True
+            assert bpy.ops.rototoon.paint_bucket(place=(8, 8)) == {"FINISHED"}
+            assert said(addon).text == "1 region stays without paint"
+            assert colour_at(addon, ob, 1, (8, 8)) == (), "a shape without paint parts it"
+            assert colour_at(addon, ob, 1, body) == pytest.approx(SKIN, abs=1e-3)
+
+
+def test_no_paint_is_said_carried_and_kept_in_documents(addon, clicked, tmp_path):  # noqa: F811
+    eye = places(1)[2][0]
+    clicked.rototoon.fill_nothing = True
+    assert bpy.ops.rototoon.paint_bucket(place=eye) == {"FINISHED"}
+    assert said(addon).text == "1 region stays without paint"
+    assert colour_at(addon, clicked, 1, eye) == ()
+    used = {clicked.data.materials[int(i)].name for i in read(addon, clicked, 1).strokes("material_index")}
+    assert "No Paint" in used and len(read(addon, clicked, 1).sizes) == 4
+    bpy.ops.rototoon.fill_drawings()
+    scripting = addon("scripting")
+
+    def bare(ob):
+        shown = {frame: len(regions) for frame, regions in scripting.regions(ob).items()}
+        return shown == dict.fromkeys(range(1, 7), 3) and all(not colour_at(addon, ob, f, places(f)[2][0]) for f in range(1, 7))
+
+    assert bare(clicked)
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert [each["colour"] for each in document["fills"][0]["regions"]].count(None) == 1
+    assert all(len(each["regions"]) == 3 for each in document["filled"])
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    other = bpy.context.object
+    assert other != clicked and bare(other)
+    bpy.ops.rototoon.fill_drawings()
+    assert bare(other), "the click came with the document"
+    again = tmp_path / "again.json"
+    bpy.ops.rototoon.export_document(filepath=str(again))
+    assert [each["colour"] for each in json.loads(again.read_text())["fills"][0]["regions"]].count(None) == 1
+    scripting.fill_region(other, 1, eye, EYE)
+    assert colour_at(addon, other, 1, eye) == pytest.approx(EYE, abs=1e-3), "it can be painted again"
+
+
+def by_material(addon, ob):
+    """The number of filled regions by the name of their material, on all frames."""
+    index = [i for frame in kinds(addon, ob, LAYER) for i in attribute(addon, ob, LAYER, frame, "material_index").tolist()]
+    return {ob.data.materials[i].name: index.count(i) for i in sorted(set(index))}
+
+
+def test_a_colour_is_its_material_and_not_its_look(addon, painted):  # noqa: F811
+    body, eye = (painted.data.materials[name] for name in ("Paint edc29e", "Paint 3366e6"))
+    body.name, eye.name = "Mantel", "Auge"
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}
+    # A night palette: both look the same.
+    body.grease_pencil.fill_color = eye.grease_pencil.fill_color
+    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}, "they stay two colours"
+    # The bucket takes a material, and not the first one that looks like it.
+    scripting, bucket = addon("scripting"), addon("paint.bucket")
+    place = places(1)[1][0]
+    taken, painted.rototoon.fill_name = bucket.taken_at(painted, 1, place)
+    assert painted.rototoon.fill_name == "Mantel"
+    scripting.fill_region(painted, 1, place, taken)
+    assert by_material(addon, painted) == {"Paint ffffff": 6, "Mantel": 6, "Auge": 12}
+
+
+def test_colours_keep_their_materials_in_documents(addon, painted, tmp_path):  # noqa: F811
+    painted.data.materials["Paint edc29e"].name = "Mantel"
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    assert sorted(document["palette"]) == ["Mantel", "Paint 3366e6", "Paint ffffff"]
+    assert {each["name"] for each in document["filled"][3]["regions"]} == set(document["palette"])
+    count = len(bpy.data.materials)
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    other = bpy.context.object
+    assert by_material(addon, other) == by_material(addon, painted)
+    added = set(bpy.data.materials[count:]) if len(bpy.data.materials) > count else set()
+    assert not any(own.name.startswith(("Mantel.", "Paint")) for own in added), "one change of colour reaches both objects"
+    # A material of somebody else that looks otherwise is no colour of this paint.
+    stranger = bpy.data.materials.new("Fremd")
+    bpy.data.materials.create_gpencil_data(stranger)
+    stranger.grease_pencil.fill_color = (0, 0, 0, 1)
+    for own in [each for entry in document["fills"] + document["filled"] for each in entry["regions"]]:
+        own["name"] = own["name"].replace("Mantel", "Fremd")
+    document["palette"]["Fremd"] = document["palette"].pop("Mantel")
+    path.write_text(json.dumps(document))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    third = bpy.context.object
+    assert set(by_material(addon, third)) == {"Fremd.001", "Paint 3366e6", "Paint ffffff"}
+    assert colour_at(addon, third, 3, places(3)[1][0]) == pytest.approx(SKIN, abs=1e-3)
