@@ -54,17 +54,22 @@ def install() -> None:
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "long: computes for long; left out if ROTOTOON_LONG_TESTS is off")
+    config.addinivalue_line("markers", "every_version: runs whole in each Blender, also in those between the oldest and the newest one")
     install()
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leaves out long tests on request: a Blender between the oldest and the newest one shares its interfaces with one of them."""
-    if os.environ.get("ROTOTOON_LONG_TESTS") != "off":
+    """Of a Blender between the oldest and the newest one, which shares its interfaces with one of them: what calls every operator, and the
+    first test of each other file."""
+    if os.environ.get("ROTOTOON_TESTS") != "sample":
         return
-    long = [item for item in items if item.get_closest_marker("long")]
-    config.hook.pytest_deselected(items=long)
-    items[:] = [item for item in items if item not in long]
+    seen, kept, left = set(), [], []
+    for item in items:
+        is_first = item.path not in seen
+        seen.add(item.path)
+        (kept if is_first or item.get_closest_marker("every_version") else left).append(item)
+    config.hook.pytest_deselected(items=left)
+    items[:] = kept
 
 
 def pytest_unconfigure(config):

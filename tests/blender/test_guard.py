@@ -9,6 +9,8 @@ import shots
 import studio
 from studio import OPERATORS
 
+pytestmark = pytest.mark.every_version
+
 WRITERS = [(name, layer) for name, call in OPERATORS.items() for layer in sorted(call.writes)]
 
 

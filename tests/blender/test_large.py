@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 import shots
 
-pytestmark = pytest.mark.long
-
 FRAMES, PARTS, POINTS, STEPS = 40, 10, 500, 5
 
 

@@ -8,8 +8,6 @@ import pytest
 import shots
 from live_stage import settle, switched_on, work_off
 
-pytestmark = pytest.mark.long
-
 
 @pytest.fixture
 def sliced(addon, live, monkeypatch):

@@ -6,8 +6,6 @@ import pytest
 import shots
 from line_stage import opened
 
-pytestmark = pytest.mark.long
-
 TURN = np.linspace(0, 2 * np.pi, 14, endpoint=False)
 CIRCLE = np.column_stack([np.cos(TURN), np.sin(TURN)])
 FAR = (130.0, 15.0)

@@ -11,6 +11,8 @@ import shots
 import studio
 from studio import OPERATORS
 
+pytestmark = pytest.mark.every_version
+
 SLOW = {"open_sample"}
 
 

@@ -12,8 +12,6 @@ import stand_in
 from line_stage import film, pictures  # noqa: F401 - fixtures
 from line_stage import attribute, handle_of, kinds, opened, rendered, said
 
-pytestmark = pytest.mark.long
-
 PAPER, SKIN, EYE, GREEN = (1.0, 1.0, 1.0), (0.93, 0.76, 0.62), (0.2, 0.4, 0.9), (0.1, 0.7, 0.2)
 LAYER = "Paint"
 

@@ -9,8 +9,6 @@ from line_stage import attribute, film, kinds, pictures, said  # noqa: F401 - fi
 from shots import write_png
 from test_paint import EYE, LAYER, PAPER, SKIN, click, clicked, colour_at, painted, places, read  # noqa: F401 - fixtures
 
-pytestmark = pytest.mark.long
-
 
 def gapped(folder, rows):
     """The film with a gap of some rows in the left side of the body. Returns its active object."""

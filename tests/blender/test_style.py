@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 import shots
 
-pytestmark = pytest.mark.long
-
 SIZE = shots.SIZE
 
 

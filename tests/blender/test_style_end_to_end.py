@@ -16,8 +16,6 @@ import numpy as np
 import pytest
 import shots
 
-pytestmark = pytest.mark.long
-
 ROOT = Path(__file__).resolve().parents[2]
 BACK_TO_FRONT = (
     "far arm", "far mitten", "far leg", "far boot", "near leg", "near boot", "body", "head", "near arm", "near mitten",

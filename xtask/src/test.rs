@@ -216,11 +216,11 @@ fn blender_tests(wheel: Wheel, build: Build) -> Result<Option<String>> {
     };
     let resources = target().join(format!("blender-user-{}", wheel.blender));
     empty_folder(&resources)?;
-    // What computes for long is tested in the oldest and the newest version. Each other one has the interfaces of one of them.
-    let ends = [WHEELS.first(), WHEELS.last()].contains(&Some(&wheel));
+    // All is tested in the oldest and the newest version. Each other one has the interfaces of one of them.
+    let is_end = [WHEELS.first(), WHEELS.last()].contains(&Some(&wheel));
     run(command(python)
         .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/blender"])
-        .env("ROTOTOON_LONG_TESTS", if ends { "on" } else { "off" })
+        .env("ROTOTOON_TESTS", if is_end { "all" } else { "sample" })
         .env("ROTOTOON_ZIP", &built.zip)
         .env("ROTOTOON_CLI", &built.cli)
         .env("ROTOTOON_ROOT", root())
