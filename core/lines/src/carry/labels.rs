@@ -51,9 +51,9 @@ impl Labels {
         Self { samples, cells, reach, unsure }
     }
 
-    /// The stretches of a line, in order.
-    pub fn runs(&self, points: &[Point]) -> Vec<Run> {
-        let costs: Vec<BTreeMap<usize, f64>> = (0..points.len()).map(|i| self.costs(points, i)).collect();
+    /// The stretches of a line, in order, by strokes that `may` have some.
+    pub fn runs(&self, points: &[Point], may: &impl Fn(usize) -> bool) -> Vec<Run> {
+        let costs: Vec<BTreeMap<usize, f64>> = (0..points.len()).map(|i| self.costs(points, i, may)).collect();
         let near: BTreeSet<usize> = costs.iter().flat_map(|own| own.keys().copied()).collect();
         let states: Vec<Option<usize>> = near.into_iter().map(Some).chain([None]).collect();
         let weight = |i: usize| {
@@ -70,7 +70,7 @@ impl Labels {
     }
 
     /// What a point costs each stroke that reaches it.
-    fn costs(&self, points: &[Point], i: usize) -> BTreeMap<usize, f64> {
+    fn costs(&self, points: &[Point], i: usize, may: &impl Fn(usize) -> bool) -> BTreeMap<usize, f64> {
         // Neighbours are a pixel apart, so directions are those of a few of them.
         let (before, behind) = (i.saturating_sub(3), (i + 3).min(points.len() - 1));
         let along = (points[behind] - points[before]).normalize_or_zero();
@@ -78,7 +78,7 @@ impl Labels {
         for k in self.cells.near(points[i], self.reach) {
             let (sample, stroke) = &self.samples[k];
             let far = sample.place.distance(points[i]) / self.reach;
-            if far > 1.0 {
+            if far > 1.0 || !may(*stroke) {
                 continue;
             }
             let turned = 1.0 - sample.along.dot(along).powi(2);
@@ -135,7 +135,7 @@ mod tests {
         let at = |x: f64, y: f64| Point::new(x, y);
         let strokes =
             [(at(0.0, 1.0), at(50.0, 1.0)), (at(50.0, 0.0), at(100.0, 0.0)), (at(20.0, -30.0), at(20.0, 30.0))];
-        let runs = labels(&strokes).runs(&line(at(0.0, 0.0), at(200.0, 0.0)));
+        let runs = labels(&strokes).runs(&line(at(0.0, 0.0), at(200.0, 0.0)), &|_| true);
         assert_eq!(runs.iter().map(|run| run.stroke).collect::<Vec<_>>(), [Some(0), Some(1), None]);
         assert!(runs[0].points.end.abs_diff(50) <= 4 && runs[1].points.end.abs_diff(102) <= 4, "{runs:?}");
     }
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn a_short_gap_of_a_stroke_is_bridged() {
         let at = |x: f64| Point::new(x, 0.0);
-        let runs = labels(&[(at(0.0), at(40.0)), (at(52.0), at(100.0))]).runs(&line(at(0.0), at(100.0)));
+        let runs = labels(&[(at(0.0), at(40.0)), (at(52.0), at(100.0))]).runs(&line(at(0.0), at(100.0)), &|_| true);
         assert_eq!(runs.len(), 2, "{runs:?}");
     }
 }

@@ -18,15 +18,15 @@
 
 use super::identify::identify;
 use super::labels::{Labels, Run};
-use super::pieces::Guide;
+use super::pieces::{Guide, Piece};
 use super::shown::{Cover, Shown};
 use super::{NEW, finished};
 use crate::drawing::Drawing;
 use crate::pairing;
 use crate::stroke::{Stroke, Tracked};
 use crate::strokes::Walked;
-use rototoon_base::geometry::polyline;
-use std::collections::BTreeMap;
+use rototoon_base::geometry::{Point, polyline};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 /// Share of a stroke up to which what nobody knows belongs to it, where its line goes on.
@@ -37,9 +37,14 @@ const WHOLE: f64 = 0.9;
 /// Share of a line from which a stroke that nobody drew has its stretch of it.
 const MINOR: f64 = 0.25;
 
+/// Share of a stroke's length on ink that a line must have to be that stroke.
+const LEAST: f64 = 0.4;
+
 /// A drawing whose lines are given to strokes.
 struct Lines<'a> {
     shown: &'a Shown,
+    /// The strokes as they were carried.
+    carried: &'a [Tracked],
     /// The strokes that the drawing may show.
     seen: &'a [(usize, Tracked)],
     drawing: &'a Drawing,
@@ -55,11 +60,12 @@ impl Shown {
         let ink = Cover::of_ink(drawing);
         let seen: Vec<(usize, Tracked)> = self.with_places(strokes, drawing);
         let least = NEW * drawing.unit + drawing.width;
-        let lines = Lines { shown: self, seen: &seen, drawing, ink, least };
+        let lines = Lines { shown: self, carried: strokes, seen: &seen, drawing, ink, least };
         let (mut found, left) = lines.given();
         lines.shared(&mut found);
         let mut hidden: Vec<usize> = (0..strokes.len()).filter(|k| !found.contains_key(k)).collect();
-        hidden.retain(|&k| !strokes[k].stroke.fill);
+        let is_found = |k: usize| left.iter().any(|line| lines.is_of(&[Piece { line: 0, walked: line.clone() }], k));
+        hidden.retain(|&k| !strokes[k].stroke.fill && is_found(k));
         let known: Vec<Tracked> = hidden.iter().map(|&k| strokes[k].clone()).collect();
         let free = left.iter().map(|line| drawing.finished(line)).collect();
         for (named, line) in identify(&known, free, drawing.unit, next).into_iter().zip(&left) {
@@ -88,38 +94,77 @@ fn redrawn(tracked: &Tracked, line: &Walked, drawing: &Drawing) -> Tracked {
 
 impl Lines<'_> {
     /// The strokes with lines of their own, by their places, and the lines that are left.
+    ///
+    /// A stroke whose pieces are none of its own loses them, and so does one of several that do not hang together. The lines are divided again without
+    /// them, so that nothing is cut for a stroke that is not there.
     fn given(&self) -> (BTreeMap<usize, Tracked>, Vec<Walked>) {
+        let mut barred = BTreeSet::new();
+        loop {
+            let (pieces, left) = self.pieces(&barred);
+            let known = barred.len();
+            let mut found = BTreeMap::new();
+            for (k, ((place, tracked), pieces)) in self.seen.iter().zip(pieces).enumerate() {
+                if self.is_kept(tracked) {
+                    found.insert(*place, tracked.clone());
+                } else if self.is_of(&pieces, *place) {
+                    let (chain, rest) = self.chained(&tracked.stroke, pieces);
+                    barred.extend(rest.iter().map(|piece| (k, piece.line)));
+                    found.extend(chain.map(|chain| (*place, redrawn(tracked, &chain, self.drawing))));
+                } else {
+                    barred.extend(pieces.iter().map(|piece| (k, piece.line)));
+                }
+            }
+            if barred.len() == known {
+                return (found, left);
+            }
+        }
+    }
+
+    fn chained(&self, stroke: &Stroke, pieces: Vec<Piece>) -> (Option<Walked>, Vec<Piece>) {
+        let guide = Guide::new(&stroke.points, stroke.closed, 0.5 * self.ink.reach());
+        guide.chained(pieces, pairing::gap(self.drawing.width), &|p| self.ink.explains(p, |_| true))
+    }
+
+    /// The pieces of lines that each stroke has, and the lines that are left. A stroke has none of a line from which it is `barred`.
+    fn pieces(&self, barred: &BTreeSet<(usize, usize)>) -> (Vec<Vec<Piece>>, Vec<Walked>) {
         let labels = Labels::new(self.seen.iter().map(|(_, tracked)| tracked), self.ink.reach());
-        let mut pieces: Vec<Vec<Walked>> = vec![Vec::new(); self.seen.len()];
+        let mut pieces: Vec<Vec<Piece>> = vec![Vec::new(); self.seen.len()];
         let mut left = Vec::new();
-        for line in self.drawing.lines().iter().filter(|line| !line.fill && line.points.len() > 1) {
-            let (line, runs) = turned(line.clone(), &labels);
+        for (place, line) in self.drawing.lines().iter().enumerate() {
+            if line.fill || line.points.len() < 2 {
+                continue;
+            }
+            let (line, runs) = turned(line.clone(), &labels, &|k| !barred.contains(&(k, place)));
             let runs = self.divided(&line, runs);
             let whole = runs.len() == 1;
             for Run { points, stroke } in runs {
-                let piece = if whole { line.clone() } else { part(&line, points) };
+                let walked = if whole { line.clone() } else { part(&line, points) };
                 match stroke {
-                    Some(k) => pieces[k].push(piece),
-                    None if whole || piece.length() >= self.least => left.push(piece),
+                    Some(k) => pieces[k].push(Piece { line: place, walked }),
+                    None if whole || walked.length() >= self.least => left.push(walked),
                     None => {}
                 }
             }
         }
-        let mut found = BTreeMap::new();
-        for ((place, tracked), pieces) in self.seen.iter().zip(pieces) {
-            if tracked.stroke.fill || self.shown.is_drawn(tracked.track) {
-                found.insert(*place, tracked.clone());
-                continue;
-            }
-            let guide = Guide::new(&tracked.stroke.points, tracked.stroke.closed, 0.5 * self.ink.reach());
-            let gap = pairing::gap(self.drawing.width);
-            let (chain, rest) = guide.chained(pieces, gap, &|p| self.ink.explains(p, |_| true));
-            left.extend(rest.into_iter().filter(|piece| piece.length() >= self.least));
-            if let Some(chain) = chain {
-                found.insert(*place, redrawn(tracked, &chain, self.drawing));
-            }
-        }
-        (found, left)
+        (pieces, left)
+    }
+
+    /// Whether a stroke stays as it was carried.
+    fn is_kept(&self, tracked: &Tracked) -> bool {
+        tracked.stroke.fill || self.shown.is_drawn(tracked.track)
+    }
+
+    /// Whether pieces are a carried stroke: they have a fair share of what the stroke has on ink, and it has one of them. If they have less, the stroke has
+    /// left its own line for others, and this bit may be anybody's. What is not on ink says nothing: it may be hidden.
+    fn is_of(&self, pieces: &[Piece], place: usize) -> bool {
+        let (stroke, reach) = (&self.carried[place].stroke, self.ink.reach());
+        let lines: Vec<&Walked> = pieces.iter().map(|piece| &piece.walked).collect();
+        let is_near = |p: &Point| lines.iter().any(|l| polyline::distance(*p, &l.points, l.closed) <= reach);
+        let on: Vec<&Point> = stroke.points.iter().filter(|p| self.ink.explains(**p, |_| true)).collect();
+        let shared = on.iter().filter(|p| is_near(p)).count() as f64;
+        let own = lines.iter().flat_map(|line| &line.points);
+        let covered = own.clone().filter(|p| polyline::distance(**p, &stroke.points, stroke.closed) <= reach).count();
+        shared >= LEAST * on.len() as f64 && covered as f64 >= MINOR * own.count() as f64
     }
 
     /// Adds strokes that share the lines of others for good reasons.
@@ -136,30 +181,31 @@ impl Lines<'_> {
     }
 
     fn is_drawn(&self, stroke: Option<usize>) -> bool {
-        stroke.is_some_and(|k| self.seen[k].1.stroke.fill || self.shown.is_drawn(self.seen[k].1.track))
+        stroke.is_some_and(|k| self.is_kept(&self.seen[k].1))
     }
 
-    /// The stretches of a line that strokes which nobody drew have among them. Those with a small share of it have none.
+    /// The stretches of a line that strokes which nobody drew have among them, and those of nobody. Who has a small share of it has none.
     fn settled(&self, group: &[Run], length: &impl Fn(&Range<usize>) -> f64) -> Vec<Run> {
         if self.is_drawn(group[0].stroke) {
             return group.to_vec();
         }
-        let mut shares: BTreeMap<usize, f64> = BTreeMap::new();
+        let mut shares: BTreeMap<Option<usize>, f64> = BTreeMap::new();
         for run in group {
-            run.stroke.iter().for_each(|&k| *shares.entry(k).or_default() += length(&run.points));
+            *shares.entry(run.stroke).or_default() += length(&run.points);
         }
-        let all: f64 = group.iter().map(|run| length(&run.points)).sum();
+        let all: f64 = shares.values().sum();
         let most = shares.values().copied().fold(0.0, f64::max);
         shares.retain(|_, share| *share >= most || *share >= MINOR * all);
-        let kept = |run: &Run| run.stroke.filter(|k| shares.contains_key(k));
-        let mut found: Vec<Run> = group.iter().map(|run| Run { stroke: kept(run), ..run.clone() }).collect();
-        for k in 1..found.len() {
-            found[k].stroke = found[k].stroke.or(found[k - 1].stroke);
+        // By run its holder, if there is one. Others go with the run before them, or else behind them.
+        let mut holders: Vec<Option<Option<usize>>> =
+            group.iter().map(|run| shares.contains_key(&run.stroke).then_some(run.stroke)).collect();
+        for k in 1..holders.len() {
+            holders[k] = holders[k].or(holders[k - 1]);
         }
-        for k in (1..found.len()).rev() {
-            found[k - 1].stroke = found[k - 1].stroke.or(found[k].stroke);
+        for k in (1..holders.len()).rev() {
+            holders[k - 1] = holders[k - 1].or(holders[k]);
         }
-        found
+        group.iter().zip(holders).map(|(run, holder)| Run { stroke: holder.flatten(), ..run.clone() }).collect()
     }
 
     /// The stretches of a line that become pieces.
@@ -205,15 +251,15 @@ fn on_ink(tracked: &Tracked, drawing: &Drawing, ink: &Cover) -> Option<Tracked> 
 }
 
 /// A line with its stretches. A ring with several begins with one.
-fn turned(mut line: Walked, labels: &Labels) -> (Walked, Vec<Run>) {
-    let runs = labels.runs(&line.points);
+fn turned(mut line: Walked, labels: &Labels, may: &impl Fn(usize) -> bool) -> (Walked, Vec<Run>) {
+    let runs = labels.runs(&line.points, may);
     if !line.closed || runs.len() < 2 {
         return (line, runs);
     }
     let start = runs[1].points.start;
     line.points.rotate_left(start);
     line.radii.rotate_left(start);
-    let runs = labels.runs(&line.points);
+    let runs = labels.runs(&line.points, may);
     (line, runs)
 }
 
@@ -234,7 +280,6 @@ fn part(line: &Walked, range: Range<usize>) -> Walked {
 mod tests {
     use super::*;
     use crate::Options;
-    use rototoon_base::geometry::Point;
     use rototoon_base::scene::Raster;
     use std::sync::Arc;
 
@@ -274,6 +319,27 @@ mod tests {
         assert!(shown.iter().flat_map(|(_, s)| &s.stroke.points).all(|p| (p.y - 50.5).abs() > 19.0));
         assert_eq!((next, strokes.len()), (10, 2));
         assert_eq!(strokes[0].stroke.points.len(), 64, "it goes on as it was carried, since a part of it is hidden");
+    }
+
+    #[test]
+    fn a_stroke_that_has_left_its_line_gives_its_number_to_no_bit_of_another_one() {
+        // The surer stroke has the upper line. The other one lies on most of it too, and on a bit of the lower one.
+        let strayed = line(5, &[(11.0, 30.5), (85.0, 30.5), (90.0, 70.5), (109.0, 70.5)]);
+        let mut strokes = vec![line(4, &[(11.0, 30.5), (108.0, 30.5)]), Tracked { confidence: 0.5, ..strayed }];
+        let shown = Shown::default().traced(&mut strokes, &drawing(), &mut 9);
+        assert_eq!(told(&shown), [(31, 4, 1, 11), (71, 9, 1, 11)]);
+        // What is over blank paper is no sign of that: it may be hidden.
+        let hidden = line(5, &[(11.0, 50.5), (45.0, 50.5), (50.0, 70.5), (109.0, 70.5)]);
+        let mut strokes = vec![line(4, &[(11.0, 30.5), (108.0, 30.5)]), hidden];
+        let shown = Shown::default().traced(&mut strokes, &drawing(), &mut 9);
+        assert_eq!(told(&shown), [(31, 4, 1, 11), (70, 5, 5, 11), (71, 9, 1, 5)]);
+    }
+
+    #[test]
+    fn a_line_that_is_new_but_for_a_bit_is_new() {
+        let mut strokes = vec![line(4, &[(11.0, 30.5), (108.0, 30.5)]), line(5, &[(11.0, 70.5), (28.0, 70.5)])];
+        let shown = Shown::default().traced(&mut strokes, &drawing(), &mut 9);
+        assert_eq!(told(&shown), [(31, 4, 1, 11), (71, 9, 1, 11)]);
     }
 
     #[test]

@@ -20,9 +20,18 @@ pub struct Guide {
     step: f64,
 }
 
+/// A piece of a traced line.
+#[derive(Clone)]
+pub struct Piece {
+    /// The place of the line among the drawing's.
+    pub line: usize,
+    /// The piece itself.
+    pub walked: Walked,
+}
+
 /// A piece, and where it begins and ends along the stroke, in samples. On a ring its end may be beyond the ring's.
 struct Placed {
-    piece: Walked,
+    piece: Piece,
     from: f64,
     to: f64,
 }
@@ -36,21 +45,22 @@ impl Guide {
     /// The longest chain of pieces, and the pieces that are left. `gap` is the longest gap of a pen, and `on_ink` whether a place is on ink.
     pub fn chained(
         &self,
-        pieces: Vec<Walked>,
+        pieces: Vec<Piece>,
         gap: f64,
         on_ink: &impl Fn(Point) -> bool,
-    ) -> (Option<Walked>, Vec<Walked>) {
-        let longest = pieces.iter().map(Walked::length).fold(0.0, f64::max);
-        let (mut whole, open): (Vec<Walked>, Vec<Walked>) = pieces.into_iter().partition(|piece| piece.closed);
-        whole.sort_by(|a, b| b.length().total_cmp(&a.length()));
-        if whole.first().is_some_and(|ring| ring.length() >= longest) {
-            let ring = self.begun(whole.remove(0));
+    ) -> (Option<Walked>, Vec<Piece>) {
+        let longest = pieces.iter().map(|piece| piece.walked.length()).fold(0.0, f64::max);
+        let (mut whole, open): (Vec<Piece>, Vec<Piece>) = pieces.into_iter().partition(|piece| piece.walked.closed);
+        whole.sort_by(|a, b| b.walked.length().total_cmp(&a.walked.length()));
+        if whole.first().is_some_and(|ring| ring.walked.length() >= longest) {
+            let ring = self.begun(whole.remove(0).walked);
             return (Some(ring), whole.into_iter().chain(open).collect());
         }
-        let joins =
-            |a: &Placed, b: &Placed| self.follows(a, b, gap) && joins(&a.piece.points, &b.piece.points, gap, on_ink);
+        let joins = |a: &Placed, b: &Placed| {
+            self.follows(a, b, gap) && joins(&a.piece.walked.points, &b.piece.walked.points, gap, on_ink)
+        };
         let mut chains = self.chains(open, &joins);
-        let length = |chain: &[Placed]| chain.iter().map(|own| own.piece.length()).sum::<f64>();
+        let length = |chain: &[Placed]| chain.iter().map(|own| own.piece.walked.length()).sum::<f64>();
         let Some(best) = (0..chains.len()).rev().max_by(|&a, &b| length(&chains[a]).total_cmp(&length(&chains[b])))
         else {
             return (None, whole);
@@ -58,9 +68,10 @@ impl Guide {
         let chain = chains.remove(best);
         whole.extend(chains.into_iter().flatten().map(|own| own.piece));
         let (first, last) = (&chain[0], &chain[chain.len() - 1]);
-        let open = last.piece.points[last.piece.points.len() - 1].distance(first.piece.points[0]);
+        let ends = [&last.piece.walked.points, &first.piece.walked.points];
+        let open = ends[0][ends[0].len() - 1].distance(ends[1][0]);
         let is_ring = self.closed && open <= RING * length(&chain) && joins(last, first);
-        let joined = joined(chain.into_iter().map(|own| own.piece).collect(), is_ring);
+        let joined = joined(chain.into_iter().map(|own| own.piece.walked).collect(), is_ring);
         (Some(if joined.closed { self.begun(joined) } else { joined }), whole)
     }
 
@@ -72,9 +83,9 @@ impl Guide {
     }
 
     /// Pieces in the order of the stroke, in chains that a pen would draw in one go.
-    fn chains(&self, pieces: Vec<Walked>, joins: &impl Fn(&Placed, &Placed) -> bool) -> Vec<Vec<Placed>> {
-        let mut placed: Vec<Placed> =
-            pieces.into_iter().filter(|piece| piece.points.len() > 1).map(|piece| self.placed(piece)).collect();
+    fn chains(&self, pieces: Vec<Piece>, joins: &impl Fn(&Placed, &Placed) -> bool) -> Vec<Vec<Placed>> {
+        let pieces = pieces.into_iter().filter(|piece| piece.walked.points.len() > 1);
+        let mut placed: Vec<Placed> = pieces.map(|piece| self.placed(piece)).collect();
         placed.sort_by(|a, b| (a.from + a.to).total_cmp(&(b.from + b.to)));
         // A ring is cut where a pen would not go on.
         if let Some(cut) = (1..placed.len()).find(|&k| self.closed && !joins(&placed[k - 1], &placed[k])) {
@@ -91,21 +102,27 @@ impl Guide {
     }
 
     /// A piece in the direction of the stroke.
-    fn placed(&self, mut piece: Walked) -> Placed {
-        let along: f64 = piece
+    fn placed(&self, piece: Piece) -> Placed {
+        let walked = self.directed(piece.walked);
+        let [from, to] = [0, walked.points.len() - 1].map(|k| self.nearest(walked.points[k]) as f64);
+        let beyond = if self.closed && to < from { self.samples.len() as f64 } else { 0.0 };
+        Placed { piece: Piece { walked, ..piece }, from, to: to + beyond }
+    }
+
+    /// A line in the direction of the stroke.
+    fn directed(&self, mut line: Walked) -> Walked {
+        let along: f64 = line
             .points
             .windows(2)
             .step_by(3)
             .map(|pair| (pair[1] - pair[0]).dot(self.direction(self.nearest(pair[0]))))
             .sum();
         if along < 0.0 {
-            piece.points.reverse();
-            piece.radii.reverse();
-            piece.free.reverse();
+            line.points.reverse();
+            line.radii.reverse();
+            line.free.reverse();
         }
-        let [from, to] = [0, piece.points.len() - 1].map(|k| self.nearest(piece.points[k]) as f64);
-        let beyond = if self.closed && to < from { self.samples.len() as f64 } else { 0.0 };
-        Placed { piece, from, to: to + beyond }
+        line
     }
 
     fn nearest(&self, p: Point) -> usize {
@@ -123,7 +140,7 @@ impl Guide {
 
     /// A ring that begins where the stroke does and has its direction. If the stroke is open, so is the ring.
     fn begun(&self, ring: Walked) -> Walked {
-        let mut ring = self.placed(ring).piece;
+        let mut ring = self.directed(ring);
         let start = self.samples[0].place;
         let far = |k: &usize| ring.points[*k].distance_squared(start);
         let first = (0..ring.points.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
