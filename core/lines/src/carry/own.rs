@@ -5,10 +5,14 @@
 //! its own lines, and each gets its number from the strokes that were carried there:
 //!
 //! 1. Each line is divided into the stretches of [strokes](super::labels).
-//! 2. A stroke that tracing began has its stretch if that is a fair share of the line. The others lose theirs to their neighbours, so that lines do not
-//!    fall to pieces.
+//! 2. A stroke that tracing began has its stretch if that is a fair share of the line, and so has what is nobody's. The others lose theirs to their
+//!    neighbours, so that lines do not fall to pieces.
 //! 3. Stretches of one stroke are [joined](super::pieces) if a pen would have gone on. The longest one has the number.
-//! 4. What is left has the number of a hidden stroke that lies there, or a new one.
+//! 4. A stroke whose stretches are a small share of what it has on ink has left its line. It has none, and the lines are divided again without it.
+//! 5. What is left has the number of a hidden stroke that lies there, or a new one.
+//!
+//! On two films of 24 and 16 drawings, the fourth step and the share of nobody's in the second one raise the share of numbers that are on the line of the
+//! drawing before from 0.82 to 0.90 and from 0.78 to 0.86. With half and more in place of [`LEAST`] numbers come home less often.
 //!
 //! How an artist divides lines into strokes is respected. His strokes were laid along the middle of the drawing's ink, and stay so. The lines beside them are
 //! cut where they are his. Fills are as they were carried.
