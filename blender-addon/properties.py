@@ -5,7 +5,7 @@ import bpy
 from .bones.properties import BoneSettings, RototoonBone
 from .capture.properties import CaptureSettings, RototoonPart
 from .lines.properties import LineSettings
-from .paint.properties import FillSettings
+from .paint.properties import FillSettings, RototoonRecolour
 from .style import clip_browser
 from .style.properties import ClipSettings, RototoonBrowser, RototoonClip
 
@@ -16,7 +16,7 @@ class RototoonSettings(BoneSettings, ClipSettings, FillSettings, LineSettings, C
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonBone, RototoonSettings, RototoonClip, RototoonBrowser)
+CLASSES = (RototoonPart, RototoonBone, RototoonRecolour, RototoonSettings, RototoonClip, RototoonBrowser)
 
 
 def attach() -> None:

@@ -65,6 +65,17 @@ def _serves(material: bpy.types.Material, colour: np.ndarray) -> bool:
     return bool(same or material.get(OWN) or material.name.startswith(NAME))
 
 
+def is_colour(material: bpy.types.Material | None) -> bool:
+    """Whether a material is a colour of paint: it has a fill that is seen."""
+    style = material.grease_pencil if material is not None else None
+    return style is not None and bool(_fills(style)) and style.fill_color[3] > 0.0
+
+
+def look(material: bpy.types.Material) -> np.ndarray:
+    """The colour of a material's fill, sRGB."""
+    return encoded(np.array(material.grease_pencil.fill_color[:3], np.float64))
+
+
 def nothing(ob: bpy.types.Object) -> int:
     """Index of the object's material of shapes whose region stays without paint. It is made if there is none."""
     for place, bare in enumerate(bare_of(ob)):

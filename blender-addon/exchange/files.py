@@ -17,7 +17,7 @@ from .fields import wrong
 
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height", "gaps"}
 _PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
-_TOP = {"rototoon", "footage", "parts", "drawings", "pairs", "traced", "in_betweens", "matches", "fills", "filled"}
+_TOP = {"rototoon", "footage", "parts", "drawings", "pairs", "traced", "in_betweens", "matches", "fills", "filled", "recolours"}
 
 
 def load(path: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from rototoon import RototoonError, Session
-from rototoon.fills import Click
+from rototoon.fills import Click, Recolour
 
 from ..blender import colours, fill_materials, holds
 from ..blender import grease_pencil as gp
@@ -20,7 +20,7 @@ from ..common import polygons
 from ..lines import doubts
 from ..lines import plan as lines_plan
 from ..paint import clicks as paint_clicks
-from ..paint import filling, given, painted, sheets
+from ..paint import filling, given, painted, recolours, sheets
 from ..paint import plan as pl
 
 
@@ -50,6 +50,9 @@ def need_open(ob, project: dict[str, Any]) -> None:
 def draw(ob, project: dict[str, Any]) -> int:
     """Draws the paint of a document. Generated drawings of the layer are replaced, the artist's stay. Returns the number of frames."""
     fills, regions = read(project)
+    changing = recolours_of(project)
+    if changing:
+        recolours.take(ob, changing)
     if not fills and not regions:
         return 0
     offset = ob.rototoon.frame_offset
@@ -79,6 +82,18 @@ def of(ob) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
         if low <= frame <= high and before in shown:
             shown[frame] = shown[before]
     return fills, [{"frame": frame - offset, "regions": regions} for frame, regions in sorted(shown.items())]
+
+
+def recolours_of(project: dict[str, Any]) -> list[Recolour]:
+    """The colours of a document that become others. Raises a `Problem` that names the field that is wrong."""
+    if not project.get("recolours"):
+        return []
+    try:
+        own = {name: project[name] for name in ("rototoon", "footage", "palette", "fills", "recolours") if name in project}
+        with Session.from_document({**own, "parts": []}, ".") as session:
+            return session.recolours()
+    except RototoonError as error:
+        raise Problem(str(error)) from error
 
 
 def palette(fills: list[dict[str, Any]], filled: list[dict[str, Any]]) -> dict[str, list[float]]:

@@ -44,7 +44,7 @@ def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:
     guard.need(ob)
     collecting.need_same_footage(ob, footage.fields(ob, ""), result["footage"])
     plan = pl.make(ob, pl.layer_name(ob), *lines_plan.film(ob))
-    if not _same(plan.document["fills"], result.get("fills", ())):
+    if not _same(plan.document["fills"], result.get("fills", ())) or plan.document.get("recolours", []) != result.get("recolours", []):
         raise Problem("its shapes were changed since they were sent, so its paint stays as it is; press Fill Drawings")
     found = _filled(result)
     numbers = found.frames.tolist()

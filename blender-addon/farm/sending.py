@@ -51,17 +51,17 @@ def _contents(ob, lines: tracing.Wanted) -> tuple[list[dict[str, Any]], list[str
     paint, problem = _paint(ob)
     problems += [f"its paint: {problem}"] if problem else []
     if paint:
-        found[:1] = [_joined(found, paint, "fills")]
+        found[:1] = [_joined(found, paint, "fills", "recolours")]
     if why and (not found or _has_contours(ob)):
         problems.insert(0, why)
     return found, problems
 
 
-def _joined(found: list[dict[str, Any]], more: dict[str, Any], field: str) -> dict[str, Any]:
-    """The first shot with the content `more` and the field `field` of its document."""
+def _joined(found: list[dict[str, Any]], more: dict[str, Any], *fields: str) -> dict[str, Any]:
+    """The first shot with the content `more` and these fields of its document."""
     if not found:
         return more
-    document = found[0]["document"] | {field: more["document"][field]}
+    document = found[0]["document"] | {name: more["document"][name] for name in fields if name in more["document"]}
     return found[0] | more | {"document": document}
 
 

@@ -14,6 +14,7 @@ never written. Each region is one closed stroke: its outline, joined with those 
 `filling`             one run: paints in a thread, writes
 `given`               clicks and regions of a document
 `bucket`              one click with the bucket
+`recolours`           materials that become others on some frames
 `doubts`              which regions are in doubt, and where
 ====================  ==============================================================================
 

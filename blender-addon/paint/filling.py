@@ -174,7 +174,7 @@ def _hold(layer, plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn, 
 def _held(plan: pl.Plan, wanted: dict[int, list[painted.Region]], drawn, repeated: set[int]) -> set[int]:
     own = {frame for frame, sheet in drawn.items() if len(sheet.own)}
     held = plan.held | {number + plan.offset for number in repeated}
-    return {frame for frame in held & wanted.keys() if frame not in own}
+    return {frame for frame in held & wanted.keys() if frame not in own | plan.edges}
 
 
 def _kind(sheet: sheets.Sheet | None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+import bpy
 import numpy as np
 
 from ..blender import fill_materials, stroke_rows
@@ -60,6 +61,13 @@ class Palette:
             return
         look = int(content.strokes("material_index")[click.stroke]), content.strokes("fill_color")[click.stroke].copy()
         self.looks.setdefault(click.name or tuple(click.colour), look)
+
+    def add_materials(self, ob, materials: Iterable[bpy.types.Material]) -> None:
+        """Adds those of the object's materials that are given, as they are, by their names."""
+        for material in materials:
+            place = ob.data.materials.find(material.name)
+            if place >= 0:
+                self.looks.setdefault(material.name, (place, np.zeros(4, np.float32)))
 
     def of(self, ob, region: Region) -> tuple[int, np.ndarray]:
         """Material and tint of a region."""

@@ -14,7 +14,7 @@ from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common.wording import listed
 from ..lines import plan as lines_plan
-from . import clicks, painted, sheets
+from . import clicks, painted, recolours, sheets
 
 NOTHING = (
     "No region is filled yet: go to a drawing and press Paint Bucket, or fill its regions with Blender's Fill tool on the layer "
@@ -43,6 +43,9 @@ class Plan:
     """Whether a frame with the same picture as the one before holds its drawing."""
     held: set[int] = field(default_factory=set)
     """The scene frames of such pictures, once they are known."""
+
+    edges: set[int] = field(default_factory=set)
+    """Scene frames on which a colour may differ from the frame before, though the picture is the same."""
 
     @property
     def pictures(self) -> tuple[int, int]:
@@ -83,6 +86,11 @@ def make(ob, name: str, first: int, last: int) -> Plan:
     fills = [{"frame": frame - offset, "regions": clicks.asked(own)} for frame, own in sorted(plan.clicks.items())]
     shown = footage.fields(ob, pattern)
     plan.document = {"rototoon": lines_plan.VERSION, "footage": shown, "parts": [], "fills": fills}
+    changing = recolours.fields(ob)
+    if changing:
+        plan.document["recolours"] = changing
+        plan.palette.add_materials(ob, [entry.new for entry in recolours.entries(ob).values()])
+    plan.edges = recolours.edges(ob)
     if (first, last) != (low, high):
         # The library does not give the numbers of other frames to regions of another colour.
         outside = {frame: sheet for frame, sheet in drawn.items() if not first <= frame <= last}

@@ -5,6 +5,17 @@ from __future__ import annotations
 import bpy
 
 
+class RototoonRecolour(bpy.types.PropertyGroup):
+    """A material of paint that becomes another one on some scene frames."""
+
+    old: bpy.props.PointerProperty(name="From", description="The material that the regions have", type=bpy.types.Material)
+    new: bpy.props.PointerProperty(name="To", description="The material that they get", type=bpy.types.Material)
+    has_first: bpy.props.BoolProperty(name="Has a First Frame", description="It does not hold on frames before", default=False)
+    first: bpy.props.IntProperty(name="First", description="The first frame, if it has one", default=0)
+    has_last: bpy.props.BoolProperty(name="Has a Last Frame", description="It does not hold on frames after", default=False)
+    last: bpy.props.IntProperty(name="Last", description="The last frame, if it has one", default=0)
+
+
 class FillSettings:
     """Settings of paint, in the property `rototoon` of every object."""
 
@@ -35,6 +46,7 @@ class FillSettings:
         max=1.0,
         subtype="FACTOR",
     )
+    recolours: bpy.props.CollectionProperty(type=RototoonRecolour)
     show_fill_doubts: bpy.props.BoolProperty(
         name="Mark Doubtful Regions",
         description="Draw a line in black and red around regions whose colour is probably wrong",

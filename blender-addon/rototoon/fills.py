@@ -42,6 +42,28 @@ class Click(NamedTuple):
     """The name of the colour. Two names stay two colours, even if they look the same."""
 
 
+class Hue(NamedTuple):
+    """A colour of paint: by its name if it has one, otherwise by its look."""
+
+    colour: tuple[float, float, float]
+    """sRGB from 0 to 1."""
+    name: str | None = None
+    """Its name."""
+
+
+class Recolour(NamedTuple):
+    """A colour that becomes another one on some frames: a character gets wet, a lamp is switched on."""
+
+    old: Hue
+    """The colour before."""
+    new: Hue
+    """The colour that it becomes."""
+    first: int | None = None
+    """The first frame; `None` for all before `last`."""
+    last: int | None = None
+    """The last frame; `None` for all from `first` on."""
+
+
 class Leak(NamedTuple):
     """A click from which a gap in a line leads to the edge of the picture."""
 
@@ -179,3 +201,26 @@ def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float],
             expected = "a frame, a place (x, y) and a colour (r, g, b), or None for no paint"
             raise RototoonError(f"clicks[{k}]: found {click!r}, expected {expected}") from error
     return frames, places, colours
+
+
+def recolours_as_json(recolours: Iterable[Recolour]) -> str:
+    """Colours that become others in the form of a document's `recolours`."""
+
+    def hue(own: Hue) -> dict[str, Any]:
+        return {"colour": list(own.colour)} | ({} if own.name is None else {"name": own.name})
+
+    found = []
+    for own in recolours:
+        ends = {name: frame for name, frame in (("first", own.first), ("last", own.last)) if frame is not None}
+        found.append({"from": hue(own.old), "to": hue(own.new), **ends})
+    return json.dumps(found)
+
+
+def recolours_of_json(text: str) -> list[Recolour]:
+    """Colours that become others, as a session gives them."""
+
+    def hue(own: dict[str, Any]) -> Hue:
+        red, green, blue = own["colour"]
+        return Hue((red, green, blue), own.get("name"))
+
+    return [Recolour(hue(own["from"]), hue(own["to"]), own.get("first"), own.get("last")) for own in json.loads(text)]

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from . import fills
-from .fills import Click, Filled, Leak, flat
+from .fills import Click, Filled, Leak, Recolour, flat
 from .lines import Traced
 from .native import handles
 from .native.arrays import as_json, buffer, pair, text
@@ -140,6 +140,14 @@ class Session:
         frames, places, colours = flat(clicks)
         arrays = buffer(frames, "i")[0], buffer(places, "d")[0], buffer(colours, "d")[0]
         self._handle.call("rototoon_session_set_fills", *arrays, len(frames))
+
+    def recolours(self) -> list[Recolour]:
+        """The colours of paint that become others on some frames, in their order."""
+        return fills.recolours_of_json(self._handle.give(handles.Text, "rototoon_session_recolours"))
+
+    def set_recolours(self, recolours: Iterable[Recolour]) -> None:
+        """Replaces the colours that become others. Painted regions stay until the next `fill`, which follows them."""
+        self._handle.call("rototoon_session_set_recolours_json", *text(fills.recolours_as_json(recolours)))
 
     # -- work ----------------------------------------------------------------------------------------------------
 

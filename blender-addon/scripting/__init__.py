@@ -19,7 +19,7 @@ from ..common.reports import Report
 from ..common.reports import take as take_reports
 from .keys import set_key
 from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
-from .paint import Painted, Region, fill_drawings, fill_region, regions
+from .paint import Painted, Recoloured, Region, fill_drawings, fill_region, recolour, recolours, regions, remove_recolour
 from .reading import End, Part, Track, ends, lost_frames, parts, tracks, wanted_keys, weakest_frame
 from .work import Tracked, track
 
@@ -29,6 +29,7 @@ __all__ = [
     "Line",
     "Painted",
     "Part",
+    "Recoloured",
     "Region",
     "Report",
     "Track",
@@ -41,7 +42,10 @@ __all__ = [
     "lines",
     "lost_frames",
     "parts",
+    "recolour",
+    "recolours",
     "regions",
+    "remove_recolour",
     "set_key",
     "take_reports",
     "trace_drawing",

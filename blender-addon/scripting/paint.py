@@ -19,6 +19,7 @@ from ..lines import properties
 from ..lines.doubts import of_strokes
 from ..lines.operators.tracing_base import OnFootage
 from ..paint import bucket, filling, sheets
+from ..paint import recolours as changing
 from ..paint import plan as plans
 from .refusing import need, told
 
@@ -111,6 +112,60 @@ def fill_drawings(
     named = done.frames, done.missed, done.unrelated, done.overruled, done.bare
     painted, *others = (tuple(sorted(each)) for each in named)
     return Painted(done.regions, painted, dict(sorted(done.doubtful.items())), *others)
+
+
+@dataclass(frozen=True)
+class Recoloured:
+    """Result of `recolour`."""
+
+    regions: int
+    """Number of painted regions that have the new colour now."""
+    frames: tuple[int, ...]
+    """Their scene frames, rising."""
+    kept: tuple[int, ...]
+    """Scene frames on which shapes of the artist keep the old colour, rising."""
+    waiting: tuple[int, ...]
+    """Scene frames on which a drawing of the artist is held: `fill_drawings` changes the colour there."""
+
+
+@told
+def recolour(ob: bpy.types.Object, old: str, new: str, first: int | None = None, last: int | None = None) -> Recoloured:
+    """Makes one material of the paint another one from scene frame `first` to `last`, on all regions that have it, as the operator Recolour.
+
+    Without `first` it holds on all frames up to `last`, and without `last` on all from `first` on. Both are names of materials; `old` is one of the object's. The
+    artist's shapes stay as they are, and `fill_drawings` keeps the change.
+    """
+    need(ob, OnDrawing)
+    found = bpy.data.materials.get(new)
+    before = ob.data.materials.get(old)
+    if before is None:
+        raise Problem(f'"{ob.name}" has no material "{old}"')
+    if found is None:
+        raise Problem(f'There is no material "{new}"')
+    jobs.clear_the_way()
+    entry = changing.Entry(before, found, first, last)
+    done = changing.add(ob, entry)
+    kept = changing.unchanged([entry], changing.names_of_own(ob))
+    frames, own, waiting = (tuple(sorted(each)) for each in (done.frames, kept, done.waiting))
+    return Recoloured(done.regions, frames, own, waiting)
+
+
+@told
+def recolours(ob: bpy.types.Object) -> list[tuple[str, str, int | None, int | None]]:
+    """The materials that become others, in their order: the names of the old and the new one, and the first and the last scene frame. Changes nothing."""
+    need(ob, OnDrawing, guard.NOTHING)
+    return [(own.old.name, own.new.name, own.first, own.last) for own in changing.entries(ob).values()]
+
+
+@told
+def remove_recolour(ob: bpy.types.Object, place: int) -> None:
+    """Removes the entry at a place of `recolours`. `fill_drawings` paints the old colour again."""
+    need(ob, OnDrawing, guard.SETTINGS)
+    places = list(changing.entries(ob))
+    if not 0 <= place < len(places):
+        raise Problem(f"place: found {place}, expected one of the {len(places)} entries")
+    jobs.clear_the_way()
+    changing.remove(ob, places[place])
 
 
 @told

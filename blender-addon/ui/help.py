@@ -31,6 +31,7 @@ PAGES = (
     ("bpy.ops.rototoon.make_part*", "artist/lines.html"),
     ("bpy.ops.rototoon.paint_bucket*", "artist/lines.html"),
     ("bpy.ops.rototoon.fill_drawings*", "artist/lines.html"),
+    ("bpy.ops.rototoon.*recolour*", "artist/lines.html"),
     ("bpy.ops.rototoon.next_doubtful_region*", "artist/lines.html"),
     ("bpy.ops.rototoon.clear_fills*", "artist/lines.html"),
     ("bpy.ops.rototoon.*between*", "artist/tween.html"),

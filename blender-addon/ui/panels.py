@@ -7,6 +7,7 @@ import bpy
 
 from ..capture import absence, ends, live, stand
 from ..common.wording import counted
+from ..paint import recolours
 from ..style import clip_browser, limbs
 from ..tween import spacing_curve
 from .clips import draw_browser
@@ -298,6 +299,12 @@ class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
         side = row.row(align=True)
         side.ui_units_x = 4
         side.operator("rototoon.fill_drawings", text="This Frame").frames = "CURRENT"
+        column = layout.column(align=True)
+        column.operator("rototoon.recolour", icon="UV_SYNC_SELECT")
+        for place, entry in recolours.entries(context.object).items():
+            row = column.row(align=True)
+            row.label(text=entry.said())
+            row.operator("rototoon.remove_recolour", text="", icon="X").place = place
         layout.operator("rototoon.next_doubtful_region", icon="FRAME_NEXT")
         layout.prop(settings, "show_fill_doubts")
         layout.operator("rototoon.clear_fills", icon="TRASH")

@@ -12,6 +12,7 @@ from ...capture import document, snapping
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
 from ...lines import drawings
+from ...paint import recolours
 from .. import drawn, drawn_out, files, filled, layers_out, without_footage
 
 
@@ -120,7 +121,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         """Puts paint into a document. Returns the number of frames that have some."""
         fills, regions = filled.of(ob)
         named = filled.palette(fills, regions)
-        for name, value in (("palette", named), ("fills", fills), ("filled", regions)):
+        for name, value in (("palette", named), ("fills", fills), ("filled", regions), ("recolours", recolours.fields(ob))):
             if value:
                 written[name] = value
         return len({each["frame"] for each in fills + regions})

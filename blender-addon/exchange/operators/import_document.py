@@ -51,6 +51,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         project = files.load(path)
         drawn.checked(project)
         filled.read(project)
+        filled.recolours_of(project)
         shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
         if self.into == "ACTIVE":
             ob = context.object

@@ -7,7 +7,7 @@ from ...common.operators import Long
 from ...common.wording import counted, listed
 from ...lines import properties
 from ...lines.operators.tracing_base import Framed, OnFootage, Sensitive
-from .. import filling
+from .. import filling, recolours
 from .. import plan as pl
 
 
@@ -38,6 +38,8 @@ class ROTOTOON_OT_fill_drawings(Framed, Sensitive, Long, OnFootage, bpy.types.Op
         self.warn(f"hardly any region was found: {_named(done.bare)}; a higher Sensitivity finds fainter lines" if done.bare else "")
         if done.leaking:
             self.warn(f"a shape of yours fills all up to the picture's edge through a gap in a line: {_named(done.leaking)}")
+        names = {frame: {click.name for click in own} for frame, own in self._plan.clicks.items()}
+        self.warn(recolours.told(recolours.unchanged(recolours.entries(self._ob).values(), names)))
         self.warn(_doubts(done))
         return f"{counted(done.regions, 'region')} on {counted(len(done.frames), 'frame')}"
 

@@ -6,6 +6,7 @@ use rototoon::geometry::Point;
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{DOUBT, FillOptions, FillReport, LeakingClick, MissedClick};
 use rototoon::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion};
+use rototoon::project::recolours::Recolour;
 use rototoon::scene::{Colour, FrameNumber};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -109,6 +110,16 @@ pub fn clicks_by_frame(frames: &[i32], places: &[f64], colours: &[f64]) -> Resul
 /// Clicks as JSON, in the form of the document.
 pub fn fills_to_json(fills: &[FillClicks]) -> String {
     fills.iter().map(FillClicks::to_json).collect::<Value>().to_string()
+}
+
+/// Colours that become others as JSON, in the form of the document. Names have their looks beside them.
+pub fn recolours_to_json(recolours: &[Recolour]) -> String {
+    let one = |own: &Recolour| {
+        let mut value = own.to_json();
+        value["from"]["colour"] = json!(own.from.colour);
+        value
+    };
+    recolours.iter().map(one).collect::<Value>().to_string()
 }
 
 /// What painting tells, as JSON.

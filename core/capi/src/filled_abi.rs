@@ -83,6 +83,44 @@ pub unsafe extern "C" fn rototoon_session_fills(
     }
 }
 
+/// Returns the colours of paint that become others as JSON, in the form of the document's `recolours`: `[{"from": {"name", "colour"}, "to": {"name",
+/// "colour"}, "first", "last"}]`. `name` is there if the colour has one, and `first` and `last` if the range of frames ends there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_recolours(
+    session: *const RototoonSession,
+    recolours: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(recolours, null_mut(), "recolours")?;
+            let session = handle(session, "session")?;
+            let value = RototoonText::new(session.with(|session| session.recolours())?);
+            give(recolours, value);
+            Ok(())
+        })
+    }
+}
+
+/// Replaces the colours of paint that become others by some in the form of the document's `recolours`, as JSON. `rototoon_session_fill` follows them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_set_recolours_json(
+    session: *const RototoonSession,
+    recolours: *const u8,
+    recolours_length: usize,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            let session = handle(session, "session")?;
+            let recolours = text(recolours, recolours_length, "recolours")?;
+            session.with(|session| session.set_recolours_json(recolours))
+        })
+    }
+}
+
 /// Paints the regions of the footage's line drawings by the clicks in the document's `fills`, and stores `filled` in the
 /// document. Work begins on the first frame with clicks; from there colours are carried to the other frames. Clicks on
 /// later frames overrule what was carried there.

@@ -249,6 +249,17 @@ impl Session {
         Ok(())
     }
 
+    /// The colours of paint that become others, as JSON.
+    pub fn recolours(&self) -> Result<String, Failure> {
+        let recolours = self.document.recolours().map_err(Failure::error)?;
+        Ok(filled::recolours_to_json(recolours.list()))
+    }
+
+    /// Replaces the colours of paint that become others by some in the form of the document's `recolours`.
+    pub fn set_recolours_json(&mut self, json: &str) -> Result<(), Failure> {
+        self.document.set_recolours_json(json).map_err(Failure::error)
+    }
+
     /// Replaces the clicks of the painter.
     pub fn set_fills(&mut self, fills: &[FillClicks]) {
         self.document.set_fills(fills);

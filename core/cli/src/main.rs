@@ -4,7 +4,7 @@
 //! - [`project`]: reads and writes documents
 //! - [`progress`]: threads, the progress bar, and Ctrl-C
 //! - [`failure`]: errors and exit statuses
-//! - [`track`], [`snap`], [`trace`], [`fill`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`conform`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
+//! - [`track`], [`snap`], [`trace`], [`fill`], [`recolour`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`conform`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
@@ -25,6 +25,7 @@ mod import;
 mod job;
 mod progress;
 mod project;
+mod recolour;
 mod render;
 mod sheet;
 mod signals;
@@ -44,12 +45,13 @@ use std::process::ExitCode;
 type Run = fn(&ArgMatches) -> Result<(), Failure>;
 
 /// Each subcommand with the function that runs it.
-fn subcommands() -> [(Command, Run); 17] {
+fn subcommands() -> [(Command, Run); 18] {
     [
         (track::command(), track::run),
         (snap::command(), snap::run),
         (trace::command(), trace::run),
         (fill::command(), fill::run),
+        (recolour::command(), recolour::run),
         (render::command(), render::run),
         (sheet::command(), sheet::run),
         (absent::command(), absent::run),

@@ -15,15 +15,19 @@
 //! - `track` is the number of a region, the same on all frames; on one frame each number occurs once.
 //! - Later regions of a frame lie over earlier ones. What is within a hole is not painted by its region.
 //! - `confidence` is the probability, 0 to 1, that the colour is right; 1 where an artist clicked.
+//!
+//! Colours that become others from a drawing on are in [`recolours`](super::recolours).
 
 use super::Document;
 use super::drawings::lines;
 use super::fields::{FieldError, array, by_frame, colour, count, described, given, object, point, share, wrong};
 use super::save::DECIMALS;
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::palette::hex;
 use rototoon_base::scene::{Colour, FrameNumber};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 /// A colour of paint: by its name if it has one, otherwise by its look.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,6 +42,16 @@ impl Hue {
     /// Whether both are one colour, whatever the look of names.
     pub fn is_same(&self, other: &Self) -> bool {
         self.name == other.name && (self.name.is_some() || self.colour == other.colour)
+    }
+}
+
+/// Its name as it is quoted, or its look as `#rrggbb`.
+impl fmt::Display for Hue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.name {
+            Some(name) => write!(f, "{name:?}"),
+            None => f.write_str(&hex(self.colour)),
+        }
     }
 }
 
@@ -212,7 +226,7 @@ impl Document {
 fn click(value: &Value, palette: &BTreeMap<String, Colour>, place: &str) -> Result<FillClick, FieldError> {
     let fields = object(value, place)?;
     let at = point(fields.get("at"), &format!("{place}.at"))?;
-    let name = given(fields, place, "name", name)?;
+    let name = given(fields, place, "name", colour_name)?;
     let look = name.as_ref().and_then(|name| palette.get(name).copied());
     let colour = match (fields.get("colour"), &name) {
         (Some(Value::Null), Some(name)) => {
@@ -237,7 +251,7 @@ fn click(value: &Value, palette: &BTreeMap<String, Colour>, place: &str) -> Resu
 }
 
 /// Reads the name of a colour.
-fn name(value: Option<&Value>, place: &str) -> Result<String, FieldError> {
+pub(super) fn colour_name(value: Option<&Value>, place: &str) -> Result<String, FieldError> {
     match value.and_then(Value::as_str) {
         Some(name) if !name.is_empty() => Ok(name.to_owned()),
         _ => Err(wrong(place, &described(value), "the name of a colour")),
@@ -260,7 +274,7 @@ fn region(value: &Value, place: &str) -> Result<FilledRegion, FieldError> {
         outline: outline(fields.get("outline"), &format!("{place}.outline"))?,
         holes,
         colour: colour(fields.get("colour"), &format!("{place}.colour"), share)?,
-        name: given(fields, place, "name", name)?,
+        name: given(fields, place, "name", colour_name)?,
         track: count(fields.get("track"), &format!("{place}.track"))?,
         confidence: given(fields, place, "confidence", share)?.unwrap_or(1.0),
     })
@@ -289,7 +303,7 @@ fn written(region: &FilledRegion) -> Value {
 }
 
 /// Colours are told as they were given: 0.1 and not 0.10000000149.
-fn written_colour(colour: Colour) -> [f64; 3] {
+pub(super) fn written_colour(colour: Colour) -> [f64; 3] {
     colour.map(|channel| rounded(f64::from(channel), 6))
 }
 

@@ -14,6 +14,7 @@
 //! - [`drawings`]: drawings on key frames, pairs, pegs and in-betweens
 //! - [`traced`]: strokes that tracing found on every frame
 //! - [`fills`]: clicks of a painter, and the painted regions of every frame
+//! - [`recolours`]: colours of paint that become others from a drawing on
 //! - [`seen`]: which pictures results were made of
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`skeleton`]: which body the limbs or clips are of
@@ -69,6 +70,7 @@ pub mod path;
 pub mod place;
 mod plain_clips;
 pub mod problem;
+pub mod recolours;
 pub mod save;
 pub mod schema;
 pub mod seen;

@@ -11,7 +11,7 @@ use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 16] = [
+const OTHERS: [&str; 17] = [
     "drawings",
     "pairs",
     "pegs",
@@ -26,6 +26,7 @@ const OTHERS: [&str; 16] = [
     "fills",
     "filled",
     "palette",
+    "recolours",
     "clips",
     "seen",
 ];

@@ -24,7 +24,7 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     problems.append(drawing_problems(document));
-    if let Err(error) = paint(document) {
+    if let Err(error) = paint(document, &mut problems) {
         problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
     }
     for part in &document.scene.parts {
@@ -56,11 +56,11 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// The first invalid field of the document's paint.
-fn paint(document: &Document) -> Result<(), FieldError> {
+/// Warns of colours that become others without effect. The error is the first invalid field of the document's paint.
+fn paint(document: &Document, problems: &mut Problems) -> Result<(), FieldError> {
     document.fills()?;
     document.filled()?;
-    Ok(())
+    super::recolour::problems(document, problems)
 }
 
 /// Warns of pictures that can be drawn on but are too wide for the default preset of tracking.
@@ -206,12 +206,38 @@ mod tests {
 
     #[test]
     fn paint_that_cannot_be_read_is_named() {
-        let told = |fields: Value| paint(&document(&fields)).err().map(|error| error.to_string());
+        let told =
+            |fields: Value| paint(&document(&fields), &mut Problems::default()).err().map(|error| error.to_string());
         let click = json!({"frame": 0, "regions": [{"at": [1, 1], "name": "coat"}]});
         assert_eq!(told(json!({"palette": {"coat": [0, 0, 1]}, "fills": [click]})), None);
         let expected = "fills[0] (frame 0).regions[0].name: found \"coat\", expected a name of the field palette, or a colour beside it";
         assert_eq!(told(json!({"fills": [click]})).as_deref(), Some(expected));
         assert!(told(json!({"palette": 7})).is_some_and(|told| told.starts_with("palette: found 7")));
+    }
+
+    #[test]
+    fn colours_that_become_others_without_effect_are_named() {
+        let click = json!({"frame": 0, "regions": [{"at": [1, 1], "name": "coat", "colour": [0, 0, 1]}]});
+        let entry = |from: &str, first| json!({"from": {"name": from}, "to": {"name": "wet", "colour": [0, 0, 0]}, "first": first});
+        let mut problems = Problems::default();
+        let fields = json!({"fills": [click], "recolours": [entry("coat", 5), entry("cape", 5), entry("wet", 11)]});
+        // The third one begins with what the first one makes.
+        assert!(
+            paint(&document(&fields), &mut problems)
+                .unwrap_err()
+                .to_string()
+                .starts_with("recolours[2].to: found \"wet\"")
+        );
+        let fields = json!({"fills": [click], "recolours": [entry("coat", 5), entry("cape", 5), entry("coat", 11)]});
+        paint(&document(&fields), &mut problems).unwrap();
+        let told: Vec<String> = problems.warnings().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                r#"recolours[1].from: no click and no region has the colour "cape", so it has no effect; the paint has "coat", "wet""#,
+                "recolours[2]: it holds on no frame of the footage, 0 to 9"
+            ]
+        );
     }
 
     fn good() -> Value {

@@ -8,12 +8,14 @@
 //!
 //! What the artist leaves without paint at the edge of a model drawing is the paper around it, and stays without paint on the other drawings. Other
 //! regions without a click are guessed there. A click without a colour says that a region has no paint: such regions are followed like painted ones.
+//!
+//! A colour that becomes another one on some frames ([`crate::project::recolours`]) does so when regions are written. They are carried in the old one.
 
 #[cfg(test)]
 mod tests;
 mod told;
 
-pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick};
+pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured};
 
 use super::holds::{Holds, Stretch};
 use super::seen::Noted;
@@ -24,6 +26,7 @@ use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion, Hue};
+use crate::project::recolours::Recolours;
 use crate::project::seen::Made;
 use crate::scene::{FrameNumber, FrameSource, Progress};
 use std::collections::BTreeMap;
@@ -62,7 +65,8 @@ pub fn fill(
 ) -> Result<FillReport, PipelineError> {
     let footage = &document.scene.footage;
     let range = frames_of(footage, range)?;
-    let clicks = clicks(document)?;
+    let recolours = document.recolours().map_err(|error| field(&error))?;
+    let clicks = clicks(document, &recolours)?;
     super::memory::to_fill(footage)?;
     let earlier = document.filled().map_err(|error| field(&error))?;
     let sequence = frames(document, folder)?;
@@ -87,6 +91,7 @@ pub fn fill(
     report.leaking.sort_by_key(|leak| (leak.place.entry, leak.place.click));
     found.retain(|drawing| range.contains(&drawing.frame));
     let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
+    report.recoloured = recolour(&recolours, &mut found, &kept, &range);
     keep_apart(&mut found, &kept);
     found.extend(kept);
     found.sort_by_key(|drawing| drawing.frame);
@@ -96,6 +101,23 @@ pub fn fill(
     document.set_seen(Made::Filled, range, &noted.seen()).map_err(|error| field(&error))?;
     document.set_filled(&found);
     Ok(report)
+}
+
+/// Changes the colours of painted regions. The new numbers are those of no other region, also of none that was kept. Returns what became of
+/// the entries that hold on the painted frames.
+fn recolour(
+    recolours: &Recolours,
+    found: &mut [FilledDrawing],
+    kept: &[FilledDrawing],
+    range: &RangeInclusive<FrameNumber>,
+) -> Vec<Recoloured> {
+    let all = found.iter().chain(kept).flat_map(|drawing| &drawing.regions);
+    let next = all.map(|region| region.track + 1).max().unwrap_or(0);
+    let counts = recolours.change(found, next);
+    let told = recolours.list().iter().zip(counts).enumerate();
+    told.filter(|(_, (own, _))| range.clone().any(|frame| own.is_on(frame)))
+        .map(|(entry, (own, regions))| Recoloured { entry, what: own.to_string(), from: own.from.clone(), regions })
+        .collect()
 }
 
 /// Gives new numbers to regions whose number has another colour on frames that were kept from an earlier run.
@@ -117,10 +139,11 @@ fn keep_apart(found: &mut [FilledDrawing], kept: &[FilledDrawing]) {
     }
 }
 
-/// The frames with clicks, each with its place in the document.
-fn clicks(document: &Document) -> Result<Vec<(usize, FillClicks)>, PipelineError> {
+/// The frames with clicks, each with its place in the document. Clicks have the colours that they mean.
+fn clicks(document: &Document, recolours: &Recolours) -> Result<Vec<(usize, FillClicks)>, PipelineError> {
     let footage = &document.scene.footage;
-    let clicks = document.fills().map_err(|error| field(&error))?;
+    let mut clicks = document.fills().map_err(|error| field(&error))?;
+    clicks.iter_mut().for_each(|own| recolours.mean(own));
     if let Some((k, found)) = clicks.iter().enumerate().find(|(_, c)| c.frame < footage.first || c.frame > footage.last)
     {
         let found = found.frame;

@@ -4,7 +4,8 @@ use super::{cancel, document, open, outcome, session, take};
 use crate::entry::MAX_BYTES;
 use crate::filled_abi::{
     rototoon_filled_free, rototoon_filled_names, rototoon_filled_read, rototoon_session_fill, rototoon_session_filled,
-    rototoon_session_fills, rototoon_session_set_fills, rototoon_session_set_fills_json,
+    rototoon_session_fills, rototoon_session_recolours, rototoon_session_set_fills, rototoon_session_set_fills_json,
+    rototoon_session_set_recolours_json,
 };
 use crate::session_abi::RototoonSession;
 use crate::status::RototoonStatus::{self, BadArgument, Cancelled, Error, Ok as Fine};
@@ -62,6 +63,29 @@ fn colours_have_names() {
         assert_eq!(outcome(|error| rototoon_filled_names(&empty, &mut names, error)).0, Fine);
         assert_eq!(take(names), r#"["coat",null]"#);
         assert_eq!(outcome(|error| rototoon_filled_names(null(), &mut names, error)).0, BadArgument);
+    }
+}
+
+#[test]
+fn colours_become_others() {
+    let session = session();
+    let text = r#"[{"from": {"name": "coat", "colour": [1, 0, 0]}, "to": {"colour": [0, 0, 1]}, "last": 3}]"#;
+    // SAFETY: a living session, texts with their lengths, locals.
+    unsafe {
+        let set = |text: &str| {
+            outcome(|error| rototoon_session_set_recolours_json(session.0, text.as_ptr(), text.len(), error))
+        };
+        assert_eq!(set(text), (Fine, String::new()));
+        assert_eq!(document(&session)["recolours"][0]["last"], 3);
+        assert!(set(r#"[{"from": {"name": "coat"}}]"#).1.starts_with("recolours[0].to: found nothing"));
+        let mut given = null_mut();
+        assert_eq!(outcome(|error| rototoon_session_recolours(session.0, &mut given, error)).0, Fine);
+        let found: Value = serde_json::from_str(&take(given)).unwrap();
+        let hue = json!({"name": "coat", "colour": [1.0, 0.0, 0.0]});
+        assert_eq!(found, json!([{"from": hue, "to": {"colour": [0.0, 0.0, 1.0]}, "last": 3}]));
+        assert_eq!(outcome(|error| rototoon_session_recolours(null(), &mut given, error)).0, BadArgument);
+        assert_eq!(set("[]").0, Fine);
+        assert_eq!(document(&session).get("recolours"), None);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Document, FieldError, Note};
 use crate::drawings::lines;
+use crate::recolours::hand_on;
 use crate::save::rounded;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::FrameNumber;
@@ -33,6 +34,7 @@ pub(super) fn moved(document: &mut Document, conform: &Conform, notes: &mut Vec<
     let moved =
         made(&clicks, "clicks", conform, notes, |entry| each(entry, "regions", |click| point(click, "at", conform)));
     set(document, "fills", !clicks.is_empty(), moved);
+    recolours(document, conform, notes)?;
     pegs(document, conform, notes)?;
     limbs(document, conform)
 }
@@ -167,6 +169,25 @@ fn pegs(document: &mut Document, conform: &Conform, notes: &mut Vec<Note>) -> Re
     Ok(())
 }
 
+/// Colours that become others, on the frames of their drawings.
+fn recolours(document: &mut Document, conform: &Conform, notes: &mut Vec<Note>) -> Result<(), FieldError> {
+    let list = document.other_list("recolours")?;
+    let (mut moved, mut gone) = (Vec::new(), Vec::new());
+    for entry in &list {
+        match ranged(entry, conform) {
+            Some(value) => moved.push(value),
+            None => {
+                gone.push(entry);
+                let at = frame(entry, "first").or_else(|| frame(entry, "last")).unwrap_or_default();
+                notes.push(Note::Gone { what: "a colour that becomes another one".into(), frame: at });
+            }
+        }
+    }
+    gone.into_iter().for_each(|entry| hand_on(entry, &mut moved));
+    set(document, "recolours", !list.is_empty(), moved);
+    Ok(())
+}
+
 /// Limbs: points that were drawn on frames. Swaps and marks of depth: ranges of frames.
 fn limbs(document: &mut Document, conform: &Conform) -> Result<(), FieldError> {
     let mut limbs = document.other_list("limbs")?;
@@ -189,13 +210,13 @@ fn limbs(document: &mut Document, conform: &Conform) -> Result<(), FieldError> {
     let swapped = swapped.collect();
     set(document, "limb_swaps", !swaps.is_empty(), swapped);
     let marks = document.other_list("depth_marks")?;
-    let marked = marks.iter().filter_map(|mark| marked(mark, conform)).collect();
+    let marked = marks.iter().filter_map(|mark| ranged(mark, conform)).collect();
     set(document, "depth_marks", !marks.is_empty(), marked);
     Ok(())
 }
 
-/// A mark of depth on its frames; an end without limit stays without.
-fn marked(mark: &Value, conform: &Conform) -> Option<Value> {
+/// An entry with `first` and `last` on its frames; an end without limit stays without.
+fn ranged(mark: &Value, conform: &Conform) -> Option<Value> {
     let ends = ["first", "last"].map(|name| frame(mark, name));
     if ends == [None, None] {
         return Some(mark.clone());

@@ -24,6 +24,8 @@ fn document() -> Document {
         "fills": [{"frame": 2, "regions": [{"at": [5, 5], "colour": [1, 0, 0]}]}],
         "filled": [{"frame": 2, "regions": [{"outline": [[0, 0], [9, 0], [9, 9]], "holes": [[[1, 1], [2, 1], [2, 2]]], "colour": [1, 0, 0], "track": 0, "confidence": 1}]}],
         "limb_swaps": [[2, 4]], "depth_marks": [{"front": "arm", "behind": "arm", "first": 4}],
+        "recolours": [{"from": {"colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [0, 0, 1]}, "first": 2, "last": 4, "why": "rain"},
+            {"from": {"name": "wet"}, "to": {"colour": [0, 0, 0]}, "last": 3}, {"from": {"colour": [1, 0, 0]}, "to": {"name": "wet"}}],
         "note": {"frame": 2}}"#;
     Document::parse(text, "old.json").unwrap()
 }
@@ -74,6 +76,27 @@ fn other_numbers_and_another_size_keep_everything() {
         (&serde_json::json!([[1002, 1004]]), &Value::from(1004))
     );
     assert_eq!(value["note"], serde_json::json!({"frame": 2}), "what is not known stays");
+    let recolours: Vec<_> = new.recolours().unwrap().list().iter().map(|own| (own.first, own.last)).collect();
+    assert_eq!(recolours, [(Some(1002), Some(1004)), (None, Some(1003)), (None, None)], "open ends stay open");
+    assert_eq!(value["recolours"][0]["why"], "rain");
+}
+
+#[test]
+fn a_colour_that_becomes_another_one_goes_with_its_drawings() {
+    // Frame 3 is held longer, and frame 4 is gone.
+    let (new, notes) = moved(&[Same(1), Same(2), Same(3), Same(3), Same(5)], Placement::SAME);
+    let recolours: Vec<_> = new.recolours().unwrap().list().iter().map(|own| (own.first, own.last)).collect();
+    assert_eq!(recolours[0], (Some(1002), Some(1004)));
+    assert!(!notes.iter().any(|note| note.to_string().contains("becomes")), "{notes:?}");
+    let (new, notes) = moved(&[Same(5), Same(6)], Placement::SAME);
+    assert_eq!(new.recolours().unwrap().list().len(), 1);
+    let gone: Vec<String> = notes.iter().map(ToString::to_string).filter(|note| note.contains("becomes")).collect();
+    assert_eq!(
+        gone,
+        [2, 3].map(|frame| format!(
+            "a colour that becomes another one on {frame} of the old footage: left out, its drawing is gone"
+        ))
+    );
 }
 
 #[test]

@@ -5,6 +5,9 @@
 //! same number ([`super::outlines`]), and curves on all frames or on none. A part is hidden on frames without a contour; one that
 //! has nothing but keys says so in an attribute, since an import would take it for absent between them. The root says which frames of the document it shows. Parts are drawn in the order of
 //! depth, far ones first.
+//!
+//! Painted regions, contours and lines are groups below the root, in the order in which they lie: [`PAINT`], [`CONTOURS`] and [`LINES`]. Programs for drawing show such groups as layers of
+//! these names; Inkscape needs attributes of its own for it. A group with nothing in it is left out. No path has the id of a group, since those of paths end in a number.
 
 use super::knot::Knot;
 use super::names::written;
@@ -65,6 +68,15 @@ const LINE_WIDTH: f64 = 2.0;
 /// Opacity of fills, low enough to show what is behind a part.
 const FILL_OPACITY: f64 = 0.35;
 
+/// The ids of the groups, and their names in Inkscape: painted regions.
+pub const PAINT: [&str; 2] = ["paint", "Paint"];
+/// Contours of parts.
+pub const CONTOURS: [&str; 2] = ["contours", "Contours"];
+/// Strokes.
+pub const LINES: [&str; 2] = ["lines", "Lines"];
+/// The namespace of Inkscape's attributes.
+const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
+
 /// The attribute of a part that has nothing but keys. It is drawn on these frames only, but it is not hidden on others.
 const KEYS_ONLY: &str = "data-keys=\"only\"";
 
@@ -113,31 +125,45 @@ pub fn svg(scene: &Scene, options: &SvgOptions) -> String {
     svg_with_drawn(scene, &[], &[], options)
 }
 
-/// The scene, painted regions behind it and strokes over it as an SVG document, in pixels of the footage. Each region is
+/// The scene, painted regions behind it and strokes over it as an SVG document, in pixels of the footage. Each of the three is a group. Each region is
 /// a path with the id `fill-` and its number, each stroke one with `stroke-` and its number. Regions change from frame to frame
 /// without motion between, since their outlines have no counterparts.
 pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], options: &SvgOptions) -> String {
     let footage = &scene.footage;
     let (width, height) = (footage.width, footage.height);
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" data-first=\"{}\" data-last=\"{}\">\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:inkscape=\"{INKSCAPE}\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" data-first=\"{}\" data-last=\"{}\">\n",
         footage.first, footage.last
     );
-    let line = LINE_WIDTH * (height as f64 / 540.0).max(0.5);
-    let _ = writeln!(out, "<g stroke-width=\"{line}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">");
-    for painted in fills {
-        fill(&mut out, scene, painted);
+    let mut painted = String::new();
+    for each in fills {
+        fill(&mut painted, scene, each);
     }
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
     let names = written(scene, plain);
+    let mut contours = String::new();
     for index in order {
-        part(&mut out, scene, (index, &names[index]), options);
+        part(&mut contours, scene, (index, &names[index]), options);
     }
+    let mut lines = String::new();
     for drawn in strokes {
-        stroke(&mut out, scene, drawn, options);
+        stroke(&mut lines, scene, drawn, options);
     }
-    out + "</g>\n</svg>\n"
+    let width = LINE_WIDTH * (height as f64 / 540.0).max(0.5);
+    for (group, paths) in [(PAINT, painted), (CONTOURS, contours), (LINES, lines)] {
+        layer(&mut out, group, width, &paths);
+    }
+    out + "</svg>\n"
+}
+
+/// Writes a group that programs for drawing show as a layer; none of nothing.
+fn layer(out: &mut String, [id, label]: [&str; 2], width: f64, paths: &str) {
+    if !paths.is_empty() {
+        let own = format!("id=\"{id}\" inkscape:groupmode=\"layer\" inkscape:label=\"{label}\"");
+        let lines = format!("stroke-width=\"{width}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"");
+        let _ = writeln!(out, "<g {own} {lines}>\n{paths}</g>");
+    }
 }
 
 fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: &SvgOptions) {
@@ -351,157 +377,4 @@ fn decimal(value: f64, digits: i32) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use rototoon_base::scene::{Footage, Part};
-
-    fn scene() -> Scene {
-        let at = |x: f64| vec![Point::new(x, 0.0), Point::new(x + 8.0, 0.0), Point::new(x, 8.0)];
-        let part = Part {
-            name: "a < \"b\" & \u{1}c".into(),
-            closed: true,
-            keys: BTreeMap::from([(1, at(0.0)), (3, at(2.0))]),
-            tracks: BTreeMap::from([(1, at(0.0)), (2, at(0.0)), (3, at(2.0))]),
-            ..Part::default()
-        };
-        let footage =
-            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
-        Scene { footage, parts: vec![part] }
-    }
-
-    fn attribute<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
-        text.split(&format!(" {name}=\"")).skip(1).map(|rest| rest.split('"').next().unwrap()).collect()
-    }
-
-    #[test]
-    fn a_part_is_one_path_over_the_footage() {
-        let text = svg(&scene(), &SvgOptions::default());
-        assert_eq!(attribute(&text, "viewBox"), ["0 0 40 30"]);
-        assert!(text.contains("<title>a &lt; &quot;b&quot; &amp; c</title>"));
-        assert_eq!(attribute(&text, "dur"), ["0.32s", "0.32s"]);
-        assert_eq!(attribute(&text, "values"), ["M0 0L8 0 0 8Z;M2 0L10 0 2 8Z", "hidden;visible"]);
-        assert_eq!(attribute(&text, "keyTimes"), ["0;0.75", "0;0.25"]);
-        assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame, for readers without animation");
-    }
-
-    #[test]
-    fn even_motion_ends_at_one_with_the_last_frame() {
-        let text = svg(&scene(), &SvgOptions { motion: Motion::Linear, ..SvgOptions::default() });
-        assert_eq!(attribute(&text, "keyTimes")[0], "0;0.25;0.5;0.75;1");
-        let values: Vec<_> = attribute(&text, "values")[0].split(';').collect();
-        assert_eq!(values.len(), 5);
-        assert_eq!(values[3], values[4]);
-    }
-
-    #[test]
-    fn snapped_paths_have_the_same_number_of_points_on_each_frame() {
-        let mut scene = scene();
-        let bent = |y: f64| {
-            let p = |x: f64, y: f64| Point::new(x, y);
-            vec![
-                vec![p(0.0, 0.0), p(4.0, y), p(8.0, 0.0)],
-                vec![p(8.0, 0.0), p(0.0, 8.0)],
-                vec![p(0.0, 8.0), p(0.0, 0.0)],
-            ]
-        };
-        scene.parts[0].curves = BTreeMap::from([(1, bent(0.0)), (2, bent(-30.0))]);
-        let text = svg(&scene, &SvgOptions::default());
-        let lengths: Vec<_> =
-            attribute(&text, "values")[0].split(';').map(|value| value.split([' ', 'L']).count()).collect();
-        assert_eq!(lengths.len(), 3, "{text}");
-        assert!(lengths[0] > 60 && lengths.iter().all(|length| *length == lengths[0]), "{lengths:?}");
-    }
-
-    #[test]
-    fn a_stroke_is_a_path_that_is_hidden_where_it_is_not() {
-        let at = |x: f64, count: usize| (0..count).map(|k| Point::new(x + k as f64, 5.0)).collect::<Vec<_>>();
-        let points = BTreeMap::from([(1, at(0.0, 2)), (2, at(3.0, 4))]);
-        let red = SvgStroke {
-            name: "stroke 7".into(),
-            points,
-            closed: false,
-            width: 2.5,
-            colour: [1.0, 0.0, 0.0],
-            ..SvgStroke::default()
-        };
-        let stroke = SvgStroke { lined: true, ..red.clone() };
-        let bare = Scene { parts: Vec::new(), ..scene() };
-        let text = svg_with_drawn(&bare, &[], std::slice::from_ref(&stroke), &SvgOptions::default());
-        assert!(text.contains("id=\"stroke-7\" fill=\"none\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{text}");
-        let black = SvgStroke { closed: true, colour: [0.0; 3], fill: true, ..red };
-        let filled = svg_with_drawn(&bare, &[], &[black], &SvgOptions::default());
-        assert!(
-            filled.contains("id=\"stroke-7\" fill=\"#000000\" stroke=\"none\" visibility=\"hidden\" d="),
-            "{filled}"
-        );
-        let faint = SvgStroke { opacities: BTreeMap::from([(2, 0.25)]), ..stroke.clone() };
-        let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
-        assert!(faint.contains("attributeName=\"opacity\"") && faint.contains("values=\"1;0.25;1\""), "{faint}");
-        assert!(!text.contains("attributeName=\"opacity\"") && !faint.contains(" opacity=\"0.25\""));
-        let first = scene().footage.first;
-        let faint = SvgStroke {
-            points: BTreeMap::from([(first, at(0.0, 2))]),
-            opacities: BTreeMap::from([(first, 0.25)]),
-            ..stroke.clone()
-        };
-        let faint = svg_with_drawn(&bare, &[], &[faint], &SvgOptions::default());
-        assert!(faint.contains(" opacity=\"0.25\" d="), "readers without animation show the first frame: {faint}");
-        let wide = SvgStroke { widths: BTreeMap::from([(2, 4.0)]), ..stroke.clone() };
-        let wide = svg_with_drawn(&bare, &[], &[wide], &SvgOptions::default());
-        assert!(wide.contains("attributeName=\"stroke-width\"") && wide.contains("values=\"2.5;4\""), "{wide}");
-        assert!(!text.contains("attributeName=\"stroke-width\""));
-        let (blue, green) = ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]);
-        let fills = BTreeMap::from([(1, blue), (2, blue)]);
-        let both = SvgStroke { closed: true, fills, ..stroke.clone() };
-        let plain = svg_with_drawn(&bare, &[], std::slice::from_ref(&both), &SvgOptions::default());
-        assert!(plain.contains("id=\"stroke-7\" fill=\"#0000ff\" stroke=\"#ff0000\" stroke-width=\"2.5\""), "{plain}");
-        assert!(!plain.contains("attributeName=\"fill\"") && !plain.contains("attributeName=\"stroke\""));
-        let (colours, fills) = (BTreeMap::from([(2, blue)]), BTreeMap::from([(1, blue), (2, green)]));
-        let changing =
-            svg_with_drawn(&bare, &[], &[SvgStroke { colours, fills, ..both.clone() }], &SvgOptions::default());
-        let animated = |attribute: &str| {
-            let rest = changing.split(&format!("attributeName=\"{attribute}\"")).nth(1).unwrap();
-            self::attribute(rest, "values")[0].to_owned()
-        };
-        assert_eq!([animated("stroke"), animated("fill")], ["#ff0000;#0000ff", "#0000ff;#00ff00"]);
-        let late = SvgStroke { fills: BTreeMap::from([(2, green)]), ..both };
-        let late = svg_with_drawn(&bare, &[], &[late], &SvgOptions::default());
-        assert!(late.contains("fill=\"none\"") && late.contains("values=\"none;#00ff00\""), "{late}");
-        assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame");
-        let values = attribute(&text, "values");
-        assert_eq!(values[1], "hidden;visible;hidden");
-        let counts: Vec<usize> = values[0].split(';').map(|d| d.split([' ', 'L']).count()).collect();
-        assert!(counts.iter().all(|count| *count == counts[0]), "{values:?}");
-    }
-
-    #[test]
-    fn parts_without_contour_are_left_out() {
-        let mut scene = scene();
-        scene.parts[0].keys.clear();
-        scene.parts[0].tracks.clear();
-        assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
-        scene.parts[0].keys.insert(0, Vec::new());
-        assert!(!svg(&scene, &SvgOptions::default()).contains("<path"));
-    }
-
-    #[test]
-    fn painted_regions_have_holes_and_are_hidden_where_they_are_not() {
-        let scene = scene();
-        let square = |at: f64, size: f64| {
-            [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size)].map(|(x, y)| Point::new(at + x, at + y)).to_vec()
-        };
-        let outlines = BTreeMap::from([(scene.footage.first, vec![square(1.0, 9.0), square(3.0, 2.0)])]);
-        let fill = SvgFill { track: 3, name: None, outlines, colour: [1.0, 0.0, 0.0] };
-        let text = svg_with_drawn(&scene, std::slice::from_ref(&fill), &[], &SvgOptions::default());
-        let expected = "<path id=\"fill-3\" fill=\"#ff0000\" fill-rule=\"evenodd\" stroke=\"none\" \
-                        d=\"M1 1L10 1 10 10 1 10ZM3 3L5 3 5 5 3 5Z\">";
-        assert!(text.contains(expected), "{text}");
-        let named = SvgFill { name: Some("M & <W>".into()), ..fill.clone() };
-        let told = svg_with_drawn(&scene, &[named], &[], &SvgOptions::default());
-        let expected = "<path id=\"fill-3\" data-colour=\"M &amp; &lt;W&gt;\" fill=\"#ff0000\"";
-        assert!(told.contains(expected) && told.contains("<title>M &amp; &lt;W&gt;</title>"), "{told}");
-        let (region, rest) = (text.find("fill-3").unwrap(), text.find("part-0").unwrap());
-        assert!(region < rest, "paint is behind the parts");
-        assert!(text[region..rest].contains("visible;hidden"), "{text}");
-    }
-}
+mod tests;

@@ -1,3 +1,5 @@
+mod recolours;
+
 use super::*;
 use crate::geometry::{Point, polygon};
 use crate::project::fills::FillClick;

@@ -3,6 +3,7 @@
 use super::super::report::runs;
 use crate::fill::Gap;
 use crate::geometry::Point;
+use crate::project::fills::Hue;
 use crate::scene::FrameNumber;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -77,6 +78,31 @@ impl fmt::Display for LeakingClick {
     }
 }
 
+/// What became of an entry of the document's field `recolours`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recoloured {
+    /// Its index in the field.
+    pub entry: usize,
+    /// What it says, in words.
+    pub what: String,
+    /// Its old colour.
+    pub from: Hue,
+    /// The number of regions that it has changed, on all painted frames together.
+    pub regions: usize,
+}
+
+impl fmt::Display for Recoloured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { entry, what, from, regions } = self;
+        write!(f, "recolours[{entry}]: {what}: ")?;
+        match regions {
+            0 => write!(f, "no region there has the colour {from}, so nothing changes"),
+            1 => write!(f, "1 region"),
+            more => write!(f, "{more} regions"),
+        }
+    }
+}
+
 /// What became of all frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
@@ -88,6 +114,8 @@ pub struct FillReport {
     pub overruled: Vec<MissedClick>,
     /// Clicks that leak to the edge of the picture.
     pub leaking: Vec<LeakingClick>,
+    /// The colours that become others on the painted frames.
+    pub recoloured: Vec<Recoloured>,
     /// By frame the number of its clicks.
     pub clicks: BTreeMap<FrameNumber, usize>,
 }
@@ -110,6 +138,7 @@ impl FillReport {
         if !other.is_empty() {
             lines.push(format!("not painted, since no painted drawing shows the same: frame {}", named(other)));
         }
+        lines.extend(self.recoloured.iter().map(ToString::to_string));
         lines.extend(self.leaking.iter().map(ToString::to_string));
         lines.extend(self.overruled_lines());
         let bare: Vec<FrameNumber> = self.frames.iter().filter(|f| f.bare).map(|f| f.frame).collect();
