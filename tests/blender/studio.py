@@ -259,6 +259,11 @@ def _painted(addon, ob):
     bpy.ops.rototoon.fill_drawings()
 
 
+def _recoloured(addon, ob):
+    _painted(addon, ob)
+    bpy.ops.rototoon.recolour(old="Paint edc29e", colour=(0.1, 0.2, 0.3))
+
+
 def _painted_and_doubted(addon, ob):
     _painted(addon, ob)
     gp = addon("blender.grease_pencil")
@@ -308,6 +313,8 @@ OPERATORS = {
     "new_key": Call(_C, _C, prepare=_on_generated),
     "open_sample": Call(changes=False),
     "paint_bucket": Call(_P, prepare=_clicked, options={"place": (90.0, 60.0)}),
+    "recolour": Call(_P, prepare=_painted, options={"old": "Paint edc29e", "colour": (0.1, 0.2, 0.3)}),
+    "remove_recolour": Call(prepare=_recoloured),
     "refresh_clips": Call(changes=False),
     "release_pins": Call(_C, prepare=_moved_and_tracked, options={"which": "ALL"}),
     "reshape_drawing": Call(_C, _C, options={"character": "plain"}),

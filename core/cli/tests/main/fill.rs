@@ -65,6 +65,7 @@ fn clicks_paint_every_frame_and_the_svg() {
     assert!(output.status.success(), "{}", told(&output));
     let text = fs::read_to_string(picture).unwrap();
     assert!(text.contains(r##"<path id="fill-2" fill="#1a33e6" fill-rule="evenodd""##), "{text}");
+    assert!(text.contains(r#"<g id="paint" inkscape:groupmode="layer" inkscape:label="Paint""#), "{text}");
 }
 
 #[test]
@@ -154,4 +155,79 @@ fn what_was_not_painted_is_told_when_it_is_rendered() {
         "{}",
         told(&output)
     );
+}
+
+/// Colour and name of the box, and its number, on each frame of a file.
+fn boxes(path: &Path) -> Vec<(Value, Value, u64)> {
+    let document: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let drawn = document["filled"].as_array().unwrap().iter();
+    // It has a hole, and the paper has none that is not the box itself.
+    let own = |drawing: &Value| {
+        let regions = drawing["regions"].as_array().unwrap();
+        let found = regions.iter().find(|region| region["colour"] != json!([1.0; 3]) && region.get("holes").is_some());
+        found
+            .map(|region| (region["colour"].clone(), region["name"].clone(), region["track"].as_u64().unwrap()))
+            .unwrap()
+    };
+    drawn.map(own).collect()
+}
+
+#[test]
+fn a_colour_becomes_another_one_and_fill_keeps_it() {
+    let (folder, path) = project(clicks());
+    let [painted, wet, again, back] =
+        ["painted", "wet", "again", "back"].map(|name| folder.path().join(name).with_extension("json"));
+    assert!(run("fill", &path, &painted, &[]).status.success());
+    let asked = ["--from", "#e6331a", "--to", "wet", "--look", "#202040", "--first", "2"];
+    let output = run("recolour", &painted, &wet, &asked);
+    assert!(output.status.success(), "{}", told(&output));
+    assert_eq!(told(&output).trim(), r##"note: #e6331a becomes "wet" from frame 2 on: 2 painted regions"##);
+    let found = boxes(&wet);
+    let dry = (json!([0.9, 0.2, 0.1]), Value::Null, 1);
+    assert_eq!(found[..2], [dry.clone(), dry.clone()]);
+    assert!(found[2..].iter().all(|own| own.1 == "wet" && own.2 == 3), "{found:?}");
+    let output = run("fill", &wet, &again, &[]);
+    assert!(
+        told(&output).contains("recolours[0]: #e6331a becomes \"wet\" from frame 2 on: 2 regions"),
+        "{}",
+        told(&output)
+    );
+    assert_eq!(boxes(&again), found);
+    // It is taken back with the same colours.
+    let output = run("recolour", &again, &back, &["--from", "#e6331a", "--to", "wet", "--remove"]);
+    assert!(told(&output).contains("removed: #e6331a becomes"), "{}", told(&output));
+    assert!(run("fill", &back, &again, &[]).status.success());
+    assert_eq!(fs::read_to_string(&again).unwrap(), fs::read_to_string(&painted).unwrap());
+}
+
+#[test]
+fn colours_that_cannot_become_others_are_named() {
+    let (folder, path) = project(clicks());
+    let out = folder.path().join("out.json");
+    for (asked, wanted) in [
+        (
+            &["--from", "coat", "--to", "#000000"][..],
+            r##"--from: found "coat", expected a colour of the paint: #ffffff, #e6331a, #1a33e6"##,
+        ),
+        (
+            &["--from", "#e6331a", "--to", "wet"],
+            "--to: found \"wet\", expected a colour of the paint (#ffffff, #e6331a, #1a33e6), or a new name with --look",
+        ),
+        (&["--from", "#e6331a", "--to", "#e6331a"], "--to: found #e6331a, expected another colour than that of --from"),
+        (&["--from", "#e6331a", "--to", "#1a33e6", "--look", "#000000"], "--look: #1a33e6 has a look already"),
+        (
+            &["--from", "#e6331a", "--to", "#000000", "--first", "9"],
+            "--first: frame 9 is outside the footage, which has frames 0 to 3",
+        ),
+        (
+            &["--from", "#e6331a", "--to", "#000000", "--first", "3", "--last", "2"],
+            "--last: found 2, expected at least 3, the first frame",
+        ),
+        (&["--from", "#e6331a", "--to", "#000000", "--remove"], "--remove: found no such entry: the document has none"),
+    ] {
+        let output = run("recolour", &path, &out, asked);
+        assert_eq!(output.status.code(), Some(2), "{asked:?}");
+        assert!(told(&output).contains(wanted), "{}", told(&output));
+        assert!(!out.exists());
+    }
 }
