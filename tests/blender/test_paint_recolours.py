@@ -3,6 +3,7 @@
 import json
 
 import bpy
+import line_shots as ls
 import pytest
 from line_stage import attribute, film, kinds, pictures, said  # noqa: F401 - fixtures
 from test_paint import LAYER, clicked, painted, places, read  # noqa: F401 - fixtures
@@ -79,14 +80,14 @@ def test_shapes_of_the_artist_stay_and_are_told(addon, painted):  # noqa: F811
     assert said(addon).warnings == () and names(addon, painted) == ["Wet", "Wet"] + [BODY] * 4
 
 
-def test_a_range_in_the_middle_of_a_held_drawing(addon, clicked, tmp_path):  # noqa: F811
-    scripting = addon("scripting")
-    folder = addon("blender.footage").pattern_of(clicked)[0]
-    import pathlib
-
-    frames = sorted(pathlib.Path(folder).parent.glob("*" + pathlib.Path(folder).suffix))
-    for path in frames[3:]:
-        path.write_bytes(frames[2].read_bytes())
+def test_a_range_in_the_middle_of_a_held_drawing(addon, library, tmp_path):
+    scripting, first = addon("scripting"), ls.draw_sequence(tmp_path)
+    pictures_of = sorted(tmp_path.glob(f"*{first.suffix}"))
+    for path in pictures_of[3:]:
+        path.write_bytes(pictures_of[2].read_bytes())
+    clicked = ls.set_up(first)
+    for place, colour in places(1):
+        scripting.fill_region(clicked, 1, place, colour)
     bpy.ops.rototoon.fill_drawings()
     assert sorted(kinds(addon, clicked, LAYER)) == [1, 2, 3], "frames 3 to 6 show one drawing"
     wet()

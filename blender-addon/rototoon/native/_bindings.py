@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xce57a28ab35c291e
+HEADER_HASH = 0x7eaa19b8d3cc18dd
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0
@@ -32,6 +32,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     ),
     "rototoon_session_set_fills_json": (
         (2, "fills_length", ctypes.c_size_t),
+    ),
+    "rototoon_session_set_recolours_json": (
+        (2, "recolours_length", ctypes.c_size_t),
     ),
     "rototoon_session_fill": (
         (2, "options_length", ctypes.c_size_t),
@@ -211,6 +214,19 @@ def declare(library: ctypes.CDLL) -> None:
     library.rototoon_session_fills.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_recolours.restype = ctypes.c_int32
+    library.rototoon_session_recolours.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_set_recolours_json.restype = ctypes.c_int32
+    library.rototoon_session_set_recolours_json.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_void_p,
     ]
     library.rototoon_session_fill.restype = ctypes.c_int32

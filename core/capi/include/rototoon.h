@@ -169,6 +169,18 @@ RototoonStatus rototoon_session_fills(const struct RototoonSession *session,
                                       struct RototoonText **fills,
                                       struct RototoonText **error);
 
+// Returns the colours of paint that become others as JSON, in the form of the document's `recolours`: `[{"from": {"name", "colour"}, "to": {"name",
+// "colour"}, "first", "last"}]`. `name` is there if the colour has one, and `first` and `last` if the range of frames ends there.
+RototoonStatus rototoon_session_recolours(const struct RototoonSession *session,
+                                          struct RototoonText **recolours,
+                                          struct RototoonText **error);
+
+// Replaces the colours of paint that become others by some in the form of the document's `recolours`, as JSON. `rototoon_session_fill` follows them.
+RototoonStatus rototoon_session_set_recolours_json(const struct RototoonSession *session,
+                                                   const uint8_t *recolours,
+                                                   size_t recolours_length,
+                                                   struct RototoonText **error);
+
 // Paints the regions of the footage's line drawings by the clicks in the document's `fills`, and stores `filled` in the
 // document. Work begins on the first frame with clicks; from there colours are carried to the other frames. Clicks on
 // later frames overrule what was carried there.
