@@ -129,9 +129,9 @@ def fields(ob) -> list[dict[str, Any]]:
     """The entries in the form of a document."""
     offset, found = ob.rototoon.frame_offset, []
     for entry in entries(ob).values():
-        look = fill_materials.look(entry.new).clip(0, 1).round(6).tolist()
+        old, new = ({"name": own.name, "colour": fill_materials.look(own).clip(0, 1).round(6).tolist()} for own in (entry.old, entry.new))
         ends = {name: frame - offset for name, frame in (("first", entry.first), ("last", entry.last)) if frame is not None}
-        found.append({"from": {"name": entry.old.name}, "to": {"name": entry.new.name, "colour": look}, **ends})
+        found.append({"from": old, "to": new, **ends})
     return found
 
 

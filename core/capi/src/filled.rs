@@ -114,12 +114,7 @@ pub fn fills_to_json(fills: &[FillClicks]) -> String {
 
 /// Colours that become others as JSON, in the form of the document. Names have their looks beside them.
 pub fn recolours_to_json(recolours: &[Recolour]) -> String {
-    let one = |own: &Recolour| {
-        let mut value = own.to_json();
-        value["from"]["colour"] = json!(own.from.colour);
-        value
-    };
-    recolours.iter().map(one).collect::<Value>().to_string()
+    recolours.iter().map(Recolour::to_json).collect::<Value>().to_string()
 }
 
 /// What painting tells, as JSON.

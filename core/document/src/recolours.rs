@@ -4,7 +4,7 @@
 //! "recolours": [{"from": {"name": "coat"}, "to": {"name": "wet coat", "colour": [r, g, b]}, "first": 24, "last": 40}, "…"]
 //! ```
 //!
-//! - `from` and `to` are colours as clicks have them: by `name`, or by `colour` where there is no name. A `name` in `to` needs no `colour` if the
+//! - `from` and `to` are colours as clicks have them: by `name`, or by `colour` where there is no name. A `name` needs no `colour` if the
 //!   palette, a click or an entry before it says how it looks.
 //! - Without `first` or `last` the range of frames is open at that end.
 //! - Each entry changes what the entries before it have left. So "coat" becomes "wet coat" from 24 on, and "wet coat" becomes "icy coat" from 40 on.
@@ -16,8 +16,7 @@
 //!
 //! A painter who mends a region between `first` and `last` sees the new colour and clicks with it. Such a click *means* the old colour
 //! ([`Recolours::meant`]), so that the region is right on all frames. The new colour may be one of its own, too: a red lamp becomes blue beside the blue sky. It is
-//! if a click has it on a frame on which no entry makes it, or beside a click of the old colour. Then a click with it means what it says. So it does where
-//! nothing has the old colour.
+//! if a click has it on a frame on which no entry makes it, or beside a click of the old colour. Then a click with it means what it says.
 //!
 //! A number has one colour. So a region whose colour changes has another number from there on, the same on all frames.
 //!
@@ -55,16 +54,14 @@ impl Recolour {
 
     /// The entry of the document's field.
     pub fn to_json(&self) -> Value {
-        let from = self
-            .from
-            .name
-            .as_ref()
-            .map_or_else(|| json!({"colour": written_colour(self.from.colour)}), |name| json!({ "name": name }));
-        let mut to = json!({"colour": written_colour(self.to.colour)});
-        if let Some(name) = &self.to.name {
-            to["name"] = json!(name);
-        }
-        let mut out = json!({"from": from, "to": to});
+        let hue = |hue: &Hue| {
+            let mut out = json!({"colour": written_colour(hue.colour)});
+            if let Some(name) = &hue.name {
+                out["name"] = json!(name);
+            }
+            out
+        };
+        let mut out = json!({"from": hue(&self.from), "to": hue(&self.to)});
         for (name, frame) in [("first", self.first), ("last", self.last)] {
             if let Some(frame) = frame {
                 out[name] = json!(frame);
@@ -99,7 +96,7 @@ pub struct Recolours {
 impl Recolours {
     /// Entries beside the clicks of a document.
     pub fn new(list: Vec<Recolour>, clicks: &[FillClicks]) -> Self {
-        let literal = (0..list.len()).map(|k| !is_there(k, &list, clicks) || is_own(&list[k], &list, clicks)).collect();
+        let literal = list.iter().map(|entry| is_own(entry, &list, clicks)).collect();
         Self { list, literal }
     }
 
@@ -162,12 +159,6 @@ fn has(clicks: &FillClicks, hue: &Hue) -> bool {
     clicks.clicks.iter().filter_map(FillClick::hue).any(|own| own.is_same(hue))
 }
 
-/// Whether anything has the old colour of the entry at a place: a click, or an entry before it makes it.
-fn is_there(place: usize, list: &[Recolour], clicks: &[FillClicks]) -> bool {
-    let from = &list[place].from;
-    clicks.iter().any(|own| has(own, from)) || list[..place].iter().any(|entry| entry.to.is_same(from))
-}
-
 /// Whether the new colour of an entry is also one of its own: a click has it where no entry makes it, or beside one of the old colour.
 fn is_own(entry: &Recolour, list: &[Recolour], clicks: &[FillClicks]) -> bool {
     let made = |frame| list.iter().any(|other| other.to.is_same(&entry.to) && other.is_on(frame));
@@ -193,8 +184,10 @@ impl Document {
         let mut list = Vec::new();
         for (k, value) in self.other_list("recolours")?.iter().enumerate() {
             let read = read(value, &looks, &format!("recolours[{k}]"))?;
-            if let Some(name) = &read.to.name {
-                looks.entry(name.clone()).or_insert(read.to.colour);
+            for hue in [&read.from, &read.to] {
+                if let Some(name) = &hue.name {
+                    looks.entry(name.clone()).or_insert(hue.colour);
+                }
             }
             list.push(read);
         }
@@ -246,24 +239,28 @@ impl Document {
     }
 }
 
-/// Gives the look of a dropped entry's new colour to the entries that have it and do not say how it looks.
+/// Gives the looks that a dropped entry tells to the colours of these names that do not say how they look.
 pub(super) fn hand_on(dropped: &Value, kept: &mut [Value]) {
-    let (name, look) = (&dropped["to"]["name"], &dropped["to"]["colour"]);
-    for to in kept.iter_mut().filter_map(|entry| entry.get_mut("to")) {
-        if let (true, true, Some(to)) = (name.is_string() && to["name"] == *name, look.is_array(), to.as_object_mut()) {
-            to.entry("colour").or_insert_with(|| look.clone());
+    for (name, look) in ["from", "to"].map(|end| (&dropped[end]["name"], &dropped[end]["colour"])) {
+        if !(name.is_string() && look.is_array()) {
+            continue;
+        }
+        let ends =
+            kept.iter_mut().filter_map(Value::as_object_mut).flatten().filter_map(|(_, end)| end.as_object_mut());
+        for end in ends.filter(|end| end.get("name") == Some(name)) {
+            end.entry("colour").or_insert_with(|| look.clone());
         }
     }
 }
 
 fn read(value: &Value, looks: &BTreeMap<String, Colour>, place: &str) -> Result<Recolour, FieldError> {
     let fields = object(value, place)?;
-    let part = |name: &str, needs_look: bool| {
+    let part = |name: &str| {
         let place = format!("{place}.{name}");
         let found = fields.get(name).ok_or_else(|| wrong(&place, &described(None), "a colour: a name, or a colour"))?;
-        hue(found, looks, &place, needs_look)
+        hue(found, looks, &place)
     };
-    let (from, to) = (part("from", false)?, part("to", true)?);
+    let (from, to) = (part("from")?, part("to")?);
     if from.is_same(&to) {
         return Err(wrong(&format!("{place}.to"), &to.to_string(), "another colour than that of \"from\""));
     }
@@ -276,22 +273,19 @@ fn read(value: &Value, looks: &BTreeMap<String, Colour>, place: &str) -> Result<
     Ok(Recolour { from, to, first, last })
 }
 
-/// Reads a colour. A name whose look nobody says is black where it `needs` none.
-fn hue(value: &Value, looks: &BTreeMap<String, Colour>, place: &str, needs: bool) -> Result<Hue, FieldError> {
+/// Reads a colour. Somebody must say how a name looks.
+fn hue(value: &Value, looks: &BTreeMap<String, Colour>, place: &str) -> Result<Hue, FieldError> {
     let fields = object(value, place)?;
     let name = given(fields, place, "name", colour_name)?;
     let own = given(fields, place, "colour", |value, place| colour(value, place, share))?;
-    match (&name, own) {
+    let look = name.as_ref().and_then(|name| looks.get(name).copied()).or(own);
+    match (look, &name) {
+        (Some(colour), _) => Ok(Hue { name, colour }),
         (None, None) => Err(wrong(place, "no name and no colour", "a name, or a colour")),
-        (None, Some(colour)) => Ok(Hue { name, colour }),
-        (Some(known), own) => match looks.get(known).copied().or(own) {
-            Some(colour) => Ok(Hue { name, colour }),
-            None if needs => {
-                let expected = "a name of the field palette or of a click, or a colour beside it";
-                Err(wrong(&format!("{place}.name"), &format!("{known:?}"), expected))
-            }
-            None => Ok(Hue { name, colour: [0.0; 3] }),
-        },
+        (None, Some(known)) => {
+            let expected = "a name of the field palette or of a click, or a colour beside it";
+            Err(wrong(&format!("{place}.name"), &format!("{known:?}"), expected))
+        }
     }
 }
 

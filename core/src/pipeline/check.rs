@@ -218,7 +218,7 @@ mod tests {
     #[test]
     fn colours_that_become_others_without_effect_are_named() {
         let click = json!({"frame": 0, "regions": [{"at": [1, 1], "name": "coat", "colour": [0, 0, 1]}]});
-        let entry = |from: &str, first| json!({"from": {"name": from}, "to": {"name": "wet", "colour": [0, 0, 0]}, "first": first});
+        let entry = |from: &str, first| json!({"from": {"name": from, "colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [0, 0, 0]}, "first": first});
         let mut problems = Problems::default();
         let fields = json!({"fills": [click], "recolours": [entry("coat", 5), entry("cape", 5), entry("wet", 11)]});
         // The third one begins with what the first one makes.

@@ -40,9 +40,12 @@ pub fn colours(document: &Document) -> Result<Vec<Hue>, PipelineError> {
     known(document, usize::MAX).map_err(|error| field(&error))
 }
 
-/// The colours of clicks, of painted regions, and of the first few entries.
+/// The colours of clicks and what they mean, of painted regions, and of the first few entries.
 fn known(document: &Document, entries: usize) -> Result<Vec<Hue>, FieldError> {
-    let (clicks, filled, recolours) = (document.fills()?, document.filled()?, document.recolours()?);
+    let (mut clicks, filled, recolours) = (document.fills()?, document.filled()?, document.recolours()?);
+    let mut meant = clicks.clone();
+    meant.iter_mut().for_each(|own| recolours.mean(own));
+    clicks.extend(meant);
     let clicked = clicks.iter().flat_map(|own| &own.clicks).filter_map(FillClick::hue);
     let painted = filled.iter().flat_map(|own| &own.regions).map(FilledRegion::hue);
     let made = recolours.list().iter().take(entries).map(|entry| entry.to.clone());

@@ -164,7 +164,8 @@ fn boxes(path: &Path) -> Vec<(Value, Value, u64)> {
     // It has a hole, and the paper has none that is not the box itself.
     let own = |drawing: &Value| {
         let regions = drawing["regions"].as_array().unwrap();
-        let found = regions.iter().find(|region| region["colour"] != json!([1.0; 3]) && region.get("holes").is_some());
+        let found =
+            regions.iter().find(|region| region["colour"] != json!([1.0, 1.0, 1.0]) && region.get("holes").is_some());
         found
             .map(|region| (region["colour"].clone(), region["name"].clone(), region["track"].as_u64().unwrap()))
             .unwrap()

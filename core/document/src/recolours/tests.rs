@@ -55,8 +55,7 @@ fn entries_change_what_the_ones_before_have_left() {
     assert_eq!((numbers, counts), (vec![4, 9, 9, 10, 10], vec![4, 2]));
     let at = rototoon_base::geometry::Point::ZERO;
     let coat = FillClick { at, colour: Some([0.5; 3]), name: Some("coat".into()) };
-    let recolours = Recolours::new(list.clone(), &[FillClicks { frame: 0, clicks: vec![coat] }]);
-    assert_eq!(Recolours::new(list, &[]).meant(4, named("wet")), named("wet"), "nothing has the old colour");
+    let recolours = Recolours::new(list, &[FillClicks { frame: 0, clicks: vec![coat] }]);
     assert_eq!(recolours.meant(4, named("icy")), named("coat"), "a click means what was carried");
     assert_eq!(recolours.meant(2, named("icy")), named("icy"));
     assert_eq!(recolours.meant(0, named("wet")), named("wet"));
@@ -123,15 +122,15 @@ fn entries_are_read_written_and_removed() {
 
 #[test]
 fn a_name_looks_as_palette_click_or_the_entry_before_says() {
-    let entries = r#""recolours": [{"from": {"name": "coat"}, "to": {"name": "wet", "colour": [1, 1, 1]}},
-        {"from": {"name": "hat"}, "to": {"name": "wet", "colour": [0, 0, 0]}}]"#;
+    let entries = r#""recolours": [{"from": {"name": "coat", "colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [1, 1, 1]}},
+        {"from": {"name": "hat", "colour": [0, 1, 0]}, "to": {"name": "wet", "colour": [0, 0, 0]}}]"#;
     let looks = |fields: &str| -> Vec<Colour> {
         document(&format!("{entries}{fields}")).recolours().unwrap().list().iter().map(|own| own.to.colour).collect()
     };
     assert_eq!(looks(""), [[1.0; 3]; 2], "one name has one look");
     assert_eq!(looks(r#", "palette": {"wet": [0.5, 0.5, 0.5]}"#), [[0.5; 3]; 2]);
     let mut doc = document(
-        r#""recolours": [{"from": {"name": "coat"}, "to": {"name": "wet", "colour": [1, 1, 1]}}, {"from": {"name": "hat"}, "to": {"name": "wet"}}]"#,
+        r#""recolours": [{"from": {"colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [1, 1, 1]}}, {"from": {"colour": [0, 1, 0]}, "to": {"name": "wet"}}]"#,
     );
     doc.remove_recolours(&[0]).unwrap();
     assert_eq!(doc.recolours().unwrap().list()[0].to.colour, [1.0; 3], "its look is handed on");
@@ -141,7 +140,7 @@ fn a_name_looks_as_palette_click_or_the_entry_before_says() {
 fn errors_name_entry_and_field() {
     let told = |text: &str| document(&format!(r#""recolours": {text}"#)).recolours().unwrap_err().to_string();
     assert_eq!(told("7"), "recolours: found 7, expected a list");
-    let whole = r#""from": {"name": "a"}, "to": {"colour": [0, 0, 0]}"#;
+    let whole = r#""from": {"name": "a", "colour": [1, 1, 1]}, "to": {"colour": [0, 0, 0]}"#;
     assert_eq!(
         told(&format!(r#"[{{{whole}, "first": 5, "last": 4}}]"#)),
         "recolours[0].last: found 4, expected at least 5, the first frame"
@@ -151,11 +150,15 @@ fn errors_name_entry_and_field() {
         "recolours[0].first: found 0.5, expected a frame number"
     );
     assert_eq!(
-        told(r#"[{"from": {"name": "a"}, "to": {"name": "b"}}]"#),
+        told(r#"[{"from": {"name": "a"}, "to": {"colour": [0, 0, 0]}}]"#),
+        "recolours[0].from.name: found \"a\", expected a name of the field palette or of a click, or a colour beside it"
+    );
+    assert_eq!(
+        told(r#"[{"from": {"colour": [1, 1, 1]}, "to": {"name": "b"}}]"#),
         "recolours[0].to.name: found \"b\", expected a name of the field palette or of a click, or a colour beside it"
     );
     assert_eq!(
-        told(r#"[{"from": {"name": "a"}, "to": {"name": "a", "colour": [0, 0, 0]}}]"#),
+        told(r#"[{"from": {"name": "a", "colour": [1, 1, 1]}, "to": {"name": "a", "colour": [0, 0, 0]}}]"#),
         "recolours[0].to: found \"a\", expected another colour than that of \"from\""
     );
     assert!(told(r#"[{"to": {"name": "a"}}]"#).starts_with("recolours[0].from: found nothing"));

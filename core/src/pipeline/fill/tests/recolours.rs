@@ -98,6 +98,21 @@ fn a_new_colour_that_something_else_has_stays_with_it() {
 }
 
 #[test]
+fn a_model_drawing_in_the_new_colour_means_the_old_one() {
+    let [coat, lamp] = coat_and_lamp();
+    let wet_coat = FillClick { colour: Some(WET), ..named(coat, "wet") };
+    let mut film = Film::new(4, moving).clicked(&[(0, &[wet_coat, lamp])]);
+    recolour(&mut film.document, &wet(None, Some(1))).unwrap();
+    film.fill().unwrap();
+    let names: Vec<String> = seen(&film)[0].iter().map(|own| own.0.clone()).collect();
+    assert_eq!(names, ["wet", "wet", "coat", "coat", "coat"]);
+    assert_eq!(film.at(3, (43.0, 75.0)).unwrap().colour, RED, "the entry says how the old one looks");
+    let mut problems = crate::project::Problems::default();
+    crate::pipeline::recolour::problems(&film.document, &mut problems).unwrap();
+    assert_eq!(problems.warnings().count(), 0, "{problems}");
+}
+
+#[test]
 fn frames_that_are_painted_alone_keep_numbers_apart() {
     let mut film = Film::new(4, moving).clicked(&[(0, &coat_and_lamp())]);
     recolour(&mut film.document, &wet(Some(1), None)).unwrap();
