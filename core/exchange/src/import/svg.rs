@@ -270,11 +270,14 @@ enum Written {
     Stroke,
 }
 
-/// What an element of an export is.
+/// What an element of an export is. The title of a region is the name of its colour, if that has one.
 fn drawn(node: Node) -> Option<Written> {
     let (id, title) = (node.attribute("id")?, title(node)?);
     let words: Vec<&str> = title.split(' ').collect();
     let number = |text: &str| text.parse::<i64>().is_ok();
+    if node.has_attribute("data-colour") && id.strip_prefix("fill-").is_some_and(number) {
+        return Some(Written::Region);
+    }
     match words[..] {
         ["region", track] if number(track) && id.strip_prefix("fill-") == Some(track) => Some(Written::Region),
         ["stroke", track] | ["frame", _, "stroke", track] if number(track) && id == title.replace(' ', "-") => {
@@ -337,7 +340,9 @@ mod tests {
         };
         // The outline of a region has another number of points on every frame.
         let outlines = (0..4).map(|frame| (frame, vec![corners(4 + frame as usize)])).collect();
-        let fills = [SvgFill { track: 5, name: None, outlines, colour: [1.0, 0.0, 0.0] }];
+        let fill = SvgFill { track: 5, name: None, outlines, colour: [1.0, 0.0, 0.0] };
+        // The title of a region is the name of its colour.
+        let fills = [SvgFill { track: 6, name: Some("coat & \u{1}hat".into()), ..fill.clone() }, fill];
         let stroke =
             |name: &str| SvgStroke { name: name.into(), points: [(1, corners(2))].into(), ..SvgStroke::default() };
         let strokes = [stroke("stroke 7"), stroke("frame -3 stroke 2")];
@@ -345,13 +350,13 @@ mod tests {
         let text = svg_with_drawn(&scene, &fills, &strokes, &SvgOptions::default());
         let found = svg(&text, &footage, 0).unwrap();
         assert_eq!(found.shapes.iter().map(|shape| shape.name.as_str()).collect::<Vec<_>>(), ["arm"]);
-        let told = "painted regions (1) and strokes (2) that Rototoon has written are left out: they are no parts";
+        let told = "painted regions (2) and strokes (2) that Rototoon has written are left out: they are no parts";
         assert_eq!(found.warnings, [told]);
         // Without a part the strokes are what there is to import.
         let bare = rototoon_base::scene::Scene { parts: Vec::new(), ..scene };
         let found = svg(&svg_with_drawn(&bare, &fills, &strokes, &SvgOptions::default()), &footage, 0).unwrap();
         assert_eq!(found.shapes.iter().map(|s| s.name.as_str()).collect::<Vec<_>>(), ["stroke 7", "frame -3 stroke 2"]);
-        assert!(found.warnings[0].starts_with("painted regions (1) that"), "{:?}", found.warnings);
+        assert!(found.warnings[0].starts_with("painted regions (2) that"), "{:?}", found.warnings);
         let text = svg_with_drawn(&bare, &fills, &[], &SvgOptions::default());
         assert!(svg(&text, &footage, 0).unwrap_err().to_string().contains("painted regions that Rototoon has written"));
         // A part of such a name is a part.
