@@ -1,13 +1,13 @@
 """Colours that become others on some frames: a character gets wet, a lamp is switched on.
 
-What: the object keeps a list of entries, each with the material before, the material after, and the frames. Fill Drawings hands them to the library, which
-paints every region of the first material with the second one there. An entry that is added changes what is painted at once, so nothing has to be painted again:
-an entry changes what the ones before it have left, and that is what the layer shows.
+What: the object keeps a list of entries, each with the material before, the material after, and the frames. Fill Drawings hands them to the
+library, which paints every region of the first material with the second one there. An entry that is added changes what is painted at once, so
+nothing has to be painted again: an entry changes what the ones before it have left, and that is what the layer shows.
 
 Why so: the artist's shapes are never written. Those that keep the old material on such frames are told.
 
-Limits: a colour by a tint has no material of its own, and so no entry. Where a drawing of the artist is held across the first frame, only Fill Drawings can part the
-two. To take an entry away is up to Fill Drawings, too, because only the library knows which regions had the old colour.
+Limits: a colour by a tint has no material of its own, and so no entry. Where a drawing of the artist is held across the first frame, only Fill
+Drawings can part the two. To take an entry away is up to Fill Drawings, too, because only the library knows which regions had the old colour.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Entry:
             return "on all frames" if self.last is None else f"up to {self.last}"
         if self.last is None:
             return f"from {self.first} on"
-        return f"on {listed(sorted({self.first, self.last}) if self.last - self.first < 2 else list(range(self.first, self.last + 1)))}"
+        return f"on {self.first}" if self.first == self.last else f"on {self.first} to {self.last}"
 
 
 @dataclass
@@ -77,7 +77,8 @@ def entries(ob) -> dict[int, Entry]:
 
 
 def add(ob, entry: Entry) -> Changed:
-    """Adds an entry, and changes what Fill Drawings has painted. Raises a `Problem` if the layer may not be written, or for an entry that makes no sense."""
+    """Adds an entry, and changes what Fill Drawings has painted. Raises a `Problem` if the layer may not be written, or for an entry that
+    makes no sense."""
     name = ob.rototoon.fills_layer
     guard.need(ob)
     guard.need_named(ob, [name])
@@ -94,7 +95,7 @@ def add(ob, entry: Entry) -> Changed:
 
 
 def remove(ob, place: int) -> Entry | None:
-    """Removes the entry at a place of the list, and returns it."""
+    """Removes the entry at a place of the list, and returns it; `None` if its material was gone."""
     guard.need(ob, guard.SETTINGS)
     if not 0 <= place < len(ob.rototoon.recolours):
         raise Problem(f"There is no entry {place}: the list has {len(ob.rototoon.recolours)}")

@@ -132,8 +132,8 @@ class Recoloured:
 def recolour(ob: bpy.types.Object, old: str, new: str, first: int | None = None, last: int | None = None) -> Recoloured:
     """Makes one material of the paint another one from scene frame `first` to `last`, on all regions that have it, as the operator Recolour.
 
-    Without `first` it holds on all frames up to `last`, and without `last` on all from `first` on. Both are names of materials; `old` is one of the object's. The
-    artist's shapes stay as they are, and `fill_drawings` keeps the change.
+    Without `first` it holds on all frames up to `last`, and without `last` on all from `first` on. Both are names of materials; `old` is one
+    of the object's. The artist's shapes stay as they are, and `fill_drawings` keeps the change.
     """
     need(ob, OnDrawing)
     found = bpy.data.materials.get(new)
@@ -152,7 +152,8 @@ def recolour(ob: bpy.types.Object, old: str, new: str, first: int | None = None,
 
 @told
 def recolours(ob: bpy.types.Object) -> list[tuple[str, str, int | None, int | None]]:
-    """The materials that become others, in their order: the names of the old and the new one, and the first and the last scene frame. Changes nothing."""
+    """The materials that become others, in their order: the names of the old and the new one, and the first and the last scene frame.
+    Changes nothing."""
     need(ob, OnDrawing, guard.NOTHING)
     return [(own.old.name, own.new.name, own.first, own.last) for own in changing.entries(ob).values()]
 

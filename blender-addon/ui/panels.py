@@ -301,9 +301,10 @@ class ROTOTOON_PT_paint(DrawingPanel, bpy.types.Panel):
         side.operator("rototoon.fill_drawings", text="This Frame").frames = "CURRENT"
         column = layout.column(align=True)
         column.operator("rototoon.recolour", icon="UV_SYNC_SELECT")
-        for place, entry in recolours.entries(context.object).items():
+        entries = recolours.entries(context.object)
+        for place in range(len(settings.recolours)):
             row = column.row(align=True)
-            row.label(text=entry.said())
+            row.label(text=entries[place].said() if place in entries else "Its material is gone")
             row.operator("rototoon.remove_recolour", text="", icon="X").place = place
         layout.operator("rototoon.next_doubtful_region", icon="FRAME_NEXT")
         layout.prop(settings, "show_fill_doubts")

@@ -168,3 +168,22 @@ def test_colours_have_names(film):
         with pytest.raises(RototoonError):
             session.fill([Click(9, (1, 1), RED)])
         assert [click.name for click in session.fills()] == ["coat", "hair"]
+
+
+def test_a_colour_becomes_another_one(film):
+    wet = fills.Recolour(fills.Hue(RED), fills.Hue(GREEN, "wet"), first=2)
+    with opened(film) as session:
+        assert session.recolours() == []
+        session.set_recolours([wet, fills.Recolour(fills.Hue(GREEN, "wet"), fills.Hue(BLUE), last=0)])
+        ((old, new, first, last), other) = session.recolours()
+        assert (old.colour, old.name, new.name, first, last) == (pytest.approx(RED), None, "wet", 2, None)
+        assert (other.first, other.last) == (None, 0)
+        filled = session.fill(CLICKS)
+        found = [(filled.on(frame)[1].name, filled.on(frame)[1].track) for frame in range(4)]
+        assert found[:2] == [(None, 1)] * 2 and found[2] == found[3] and found[2][0] == "wet"
+        assert found[2][1] not in numpy.asarray(filled.tracks)[:6], "a number has one colour"
+        with pytest.raises(RototoonError, match=r"recolours\[0\].to: found #e6331a, expected another colour"):
+            session.set_recolours([fills.Recolour(fills.Hue(RED), fills.Hue(RED))])
+        assert len(session.recolours()) == 2
+        session.set_recolours([])
+        assert {filled.name for filled in session.fill().on(3)} == {None}
