@@ -44,8 +44,10 @@ def taking(ob, result: Mapping[str, Any]) -> Iterator[float]:
     guard.need(ob)
     collecting.need_same_footage(ob, footage.fields(ob, ""), result["footage"])
     plan = pl.make(ob, pl.layer_name(ob), *lines_plan.film(ob))
-    if not _same(plan.document["fills"], result.get("fills", ())) or plan.document.get("recolours", []) != result.get("recolours", []):
+    if not _same(plan.document["fills"], result.get("fills", ())):
         raise Problem("its shapes were changed since they were sent, so its paint stays as it is; press Fill Drawings")
+    if plan.document.get("recolours", []) != result.get("recolours", []):
+        raise Problem("its recolours were changed since they were sent, so its paint stays as it is; press Fill Drawings")
     found = _filled(result)
     numbers = found.frames.tolist()
     missing = set(range(plan.pictures[0], plan.pictures[1] + 1)).difference(numbers)

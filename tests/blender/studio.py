@@ -259,9 +259,15 @@ def _painted(addon, ob):
     bpy.ops.rototoon.fill_drawings()
 
 
-def _recoloured(addon, ob):
+def _painted_and_chosen(addon, ob):
     _painted(addon, ob)
-    bpy.ops.rototoon.recolour(old="Paint edc29e", colour=(0.1, 0.2, 0.3))
+    paint = [place for place, own in enumerate(ob.data.materials) if own is not None and own.name.startswith("Paint ")]
+    ob.active_material_index = paint[-1]
+
+
+def _recoloured(addon, ob):
+    _painted_and_chosen(addon, ob)
+    bpy.ops.rototoon.recolour(colour=(0.1, 0.2, 0.3))
 
 
 def _painted_and_doubted(addon, ob):
@@ -313,7 +319,7 @@ OPERATORS = {
     "new_key": Call(_C, _C, prepare=_on_generated),
     "open_sample": Call(changes=False),
     "paint_bucket": Call(_P, prepare=_clicked, options={"place": (90.0, 60.0)}),
-    "recolour": Call(_P, prepare=_painted, options={"old": "Paint edc29e", "colour": (0.1, 0.2, 0.3)}),
+    "recolour": Call(_P, prepare=_painted_and_chosen, options={"colour": (0.1, 0.2, 0.3)}),
     "remove_recolour": Call(prepare=_recoloured),
     "refresh_clips": Call(changes=False),
     "release_pins": Call(_C, prepare=_moved_and_tracked, options={"which": "ALL"}),

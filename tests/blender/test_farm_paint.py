@@ -96,6 +96,21 @@ def test_paint_that_was_changed_meanwhile_stays(addon, clicked, tmp_path):  # no
     assert colour_at(addon, clicked, 4, places(4)[2][0]) == pytest.approx(EYE, abs=1e-3)
 
 
+def test_colours_that_become_others_go_there_and_back(addon, clicked, tmp_path):  # noqa: F811
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.recolour(old="Paint edc29e", colour=GREEN)
+    _, document = send(tmp_path)
+    assert [own["first"] for own in document["recolours"]] == [document["footage"]["first"] + 3]
+    work(tmp_path)
+    collect(tmp_path)
+    for frame in range(1, 7):
+        expected = GREEN if frame >= 4 else places(frame)[1][1]
+        assert colour_at(addon, clicked, frame, places(frame)[1][0]) == pytest.approx(expected, abs=3e-3), frame
+    bpy.ops.rototoon.remove_recolour(place=0)
+    with pytest.raises(RuntimeError, match="recolours were changed since they were sent"):
+        collect(tmp_path)
+
+
 def test_contours_and_paint_go_together(addon, clicked, tmp_path):  # noqa: F811
     for frame in (1, 6):
         shots.draw(addon, clicked, frame, [ls.lines(frame - 1)[0][0][:-1:8]])

@@ -24,7 +24,7 @@ class ROTOTOON_OT_recolour(Guarded, OnDrawing, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    old: bpy.props.StringProperty(name="From", description="The material that the regions have")
+    old: bpy.props.StringProperty(name="From", description="The material that the regions have. Without one it is the active one")
     new: bpy.props.StringProperty(name="To", description="The material that they get. Without one a material of the colour below is made")
     colour: bpy.props.FloatVectorProperty(
         name="Colour",
@@ -41,10 +41,9 @@ class ROTOTOON_OT_recolour(Guarded, OnDrawing, bpy.types.Operator):
 
     def invoke(self, context, _event):
         """Called by Blender: asks for the materials."""
-        materials = [material for material in context.object.data.materials if fill_materials.is_colour(material)]
         active = context.object.active_material
-        if not self.old and materials:
-            self.old = (active if active in materials else materials[0]).name
+        if not self.old and fill_materials.is_colour(active):
+            self.old = active.name
         self.first = self.last = context.scene.frame_current
         return context.window_manager.invoke_props_dialog(self)
 
@@ -78,6 +77,9 @@ class ROTOTOON_OT_recolour(Guarded, OnDrawing, bpy.types.Operator):
 
 
 def _old(ob, name: str) -> bpy.types.Material:
+    """The object's material of a name, or the active one."""
+    if not name and ob.active_material is not None:
+        return ob.active_material
     found = next((material for material in ob.data.materials if material is not None and material.name == name), None)
     if found is None:
         raise Problem(f'"{ob.name}" has no material "{name}"' if name else "Choose the material that becomes another one")
