@@ -39,9 +39,10 @@ pub struct Hue {
 }
 
 impl Hue {
-    /// Whether both are one colour, whatever the look of names.
+    /// Whether both are one colour, whatever the look of names. Looks are the same if they are written the same.
     pub fn is_same(&self, other: &Self) -> bool {
-        self.name == other.name && (self.name.is_some() || self.colour == other.colour)
+        let alike = || written_colour(self.colour) == written_colour(other.colour);
+        self.name == other.name && (self.name.is_some() || alike())
     }
 }
 

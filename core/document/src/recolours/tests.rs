@@ -121,6 +121,16 @@ fn entries_are_read_written_and_removed() {
 }
 
 #[test]
+fn a_look_with_many_digits_is_found_again() {
+    let mut doc =
+        document(r#""fills": [{"frame": 0, "regions": [{"at": [1, 1], "colour": [0.123456789, 0.2, 0.3]}]}]"#);
+    let clicked = doc.fills().unwrap()[0].clicks[0].hue().unwrap();
+    doc.add_recolour(&Recolour { from: clicked.clone(), ..entry("", "wet", None, None) }).unwrap();
+    let entry = &doc.recolours().unwrap().list()[0];
+    assert!(entry.from.is_same(&clicked), "{entry:?}");
+}
+
+#[test]
 fn a_name_looks_as_palette_click_or_the_entry_before_says() {
     let entries = r#""recolours": [{"from": {"name": "coat", "colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [1, 1, 1]}},
         {"from": {"name": "hat", "colour": [0, 1, 0]}, "to": {"name": "wet", "colour": [0, 0, 0]}}]"#;
