@@ -77,7 +77,7 @@ fn colours_become_others() {
         };
         assert_eq!(set(text), (Fine, String::new()));
         assert_eq!(document(&session)["recolours"][0]["last"], 3);
-        assert!(set(r#"[{"from": {"name": "coat"}}]"#).1.starts_with("recolours[0].to: found nothing"));
+        assert!(set(r#"[{"from": {"name": "coat"}}]"#).1.starts_with("recolours[0].from.name: found \"coat\""));
         let mut given = null_mut();
         assert_eq!(outcome(|error| rototoon_session_recolours(session.0, &mut given, error)).0, Fine);
         let found: Value = serde_json::from_str(&take(given)).unwrap();
