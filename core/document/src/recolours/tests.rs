@@ -126,8 +126,8 @@ fn a_look_with_many_digits_is_found_again() {
         document(r#""fills": [{"frame": 0, "regions": [{"at": [1, 1], "colour": [0.123456789, 0.2, 0.3]}]}]"#);
     let clicked = doc.fills().unwrap()[0].clicks[0].hue().unwrap();
     doc.add_recolour(&Recolour { from: clicked.clone(), ..entry("", "wet", None, None) }).unwrap();
-    let entry = &doc.recolours().unwrap().list()[0];
-    assert!(entry.from.is_same(&clicked), "{entry:?}");
+    let read = doc.recolours().unwrap();
+    assert!(read.list()[0].from.is_same(&clicked), "{read:?}");
 }
 
 #[test]
