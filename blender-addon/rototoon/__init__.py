@@ -19,7 +19,7 @@ Errors are `RototoonError`. The message names the part, the frame or the field. 
 nothing has changed then.
 
 ====================  ==============================================================================
-`session`             `Session`: track, snap, trace, fill, correct and save a project document
+`session`             `Session`: track, snap, trace, fill, conform, correct and save a project document
 `lines`               traced strokes that `Session` returns
 `fills`               clicks of a painter, and painted regions that `Session` returns
 `results`             results that `Session` returns
@@ -39,12 +39,13 @@ from . import fills, lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .outcomes import outcomes
-from .results import End, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
+from .results import Conformed, End, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
 from .session import Session
 from .strokes import Guides, Pieces, Strokes, fit_strokes, hidden_lines, match_contours
 
 __all__ = [
     "Cancelled",
+    "Conformed",
     "End",
     "Guides",
     "Job",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -99,3 +101,35 @@ class Outcomes:
     """In the order of the request."""
     weakest: WeakestFrame | None
     """`None` if nothing was tracked."""
+
+
+@dataclass(frozen=True)
+class Conformed:
+    """Result of `Session.conform`: where frames and places of the old footage are in the new one."""
+
+    scale: float
+    """Pixels of the new picture for each pixel of the old one."""
+    shift: tuple[float, float]
+    """The place of the old picture's corner, in pixels of the new one."""
+    same: dict[int, int]
+    """By new frame the old frame whose drawing it shows."""
+    redrawn: dict[int, int]
+    """By new frame the old frame whose drawing was drawn again."""
+    new: list[int]
+    """New frames with a drawing that the old footage does not have, rising."""
+    gone: list[int]
+    """Old frames whose drawing is gone, rising."""
+    went: dict[int, int]
+    """By old frame the new one to which the artist's work on it goes."""
+    warnings: list[str]
+    """What did not simply go with its drawing, such as a key on a drawing that was drawn again."""
+
+    @classmethod
+    def of(cls, report: Mapping[str, Any]) -> Conformed:
+        """The result from the library's report."""
+        frames = {int(frame): shows for frame, shows in sorted(report["frames"].items(), key=lambda item: int(item[0]))}
+        same, redrawn = ({on: shows[kind] for on, shows in frames.items() if kind in shows} for kind in ("same", "redrawn"))
+        new = [on for on, shows in frames.items() if "new" in shows]
+        went = {int(old): on for old, on in sorted(report["went"].items(), key=lambda item: int(item[0]))}
+        x, y = report["shift"]
+        return cls(report["scale"], (x, y), same, redrawn, new, report["gone"], went, report["warnings"])

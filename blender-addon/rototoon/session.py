@@ -19,7 +19,7 @@ from .lines import Traced
 from .native import handles
 from .native.arrays import as_json, buffer, pair, text
 from .native.errors import RototoonError
-from .results import End, Job, Summary, Track, WeakestFrame
+from .results import Conformed, End, Job, Summary, Track, WeakestFrame
 from .types import Document, Points, Progress
 
 
@@ -249,6 +249,39 @@ class Session:
             for own in report["leaking"]
         ]
         return Filled(*regions, missed, unrelated, overruled, bare, leaking)
+
+    def conform(
+        self,
+        pattern: str,
+        frames: tuple[int, int] | None = None,
+        progress: Progress | None = None,
+        *,
+        fps: float | None = None,
+        scale: float | None = None,
+        shift: Sequence[float] | None = None,
+        frame_offset: int | None = None,
+        hold_gaps: bool | None = None,
+        threads: int = 0,
+    ) -> Conformed:
+        """Moves the document to footage that was delivered again: of another size, with other frame numbers, with drawings added, left
+        out, held longer or drawn again. The pictures of both footages are compared.
+
+        `pattern` names the files, with one ``%d`` or ``%0Nd``, relative to the session's folder. `frames` are the first and the last frame, by
+        default those of all files. `fps` and `hold_gaps` are by default as before. `scale` is the number of pixels of the new picture for each
+        pixel of the old one, and `shift` the place (x, y) of the old picture's corner in the new one; by default they are found. With
+        `frame_offset`, this number is added to each frame and no pictures are compared, so the old footage may be gone.
+
+        Keys and other work go with their drawing, results to all frames that show it. `document` then gives the moved document. Raises
+        `Cancelled`; the document is unchanged then.
+        """
+        asked = {"fps": fps, "scale": scale, "frame_offset": frame_offset, "hold_gaps": hold_gaps}
+        options: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
+        options |= {"pattern": os.fsdecode(pattern), "threads": threads}
+        if frames is not None:
+            options["frames"] = [int(frame) for frame in frames]
+        if shift is not None:
+            options["shift"] = list(pair("shift", shift))
+        return Conformed.of(self._long("rototoon_session_conform", options, progress))
 
     # -- results -------------------------------------------------------------------------------------------------
 

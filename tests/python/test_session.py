@@ -357,3 +357,30 @@ def test_contours_are_matched_whatever_their_start_and_direction():
     assert [(match["reference"], match["drawn"]) for match in matches] == [(0, 1), (1, 0)]
     for match, source in zip(matches, (target, far), strict=True):
         assert all(max(abs(a - b) for a, b in zip(p, q)) < 1.5 for p, q in zip(match["points"], source, strict=True))
+
+
+def test_a_document_moves_to_footage_that_is_delivered_again(session, folder, tmp_path):
+    session.track()
+    before = session.document()
+    # From frame 101 on, without the drawing of frame 5, and with another one in the place of that of frame 9.
+    order = [frame for frame in FRAMES if frame != 5]
+    for new, old in enumerate(order, 101):
+        (tmp_path / f"new_{new}.png").write_bytes((folder / f"frame_{old:03}.png").read_bytes())
+    pattern = str(tmp_path / "new_%d.png")
+    with pytest.raises(Cancelled):
+        session.conform(pattern, progress=lambda _share, _step: False)
+    with pytest.raises(RototoonError, match="found no file of this name"):
+        session.conform(str(tmp_path / "none_%d.png"))
+    with pytest.raises(RototoonError, match=r"shift: found \[1\], expected two numbers"):
+        session.conform(pattern, shift=[1])
+    assert session.document() == before
+    conformed = session.conform(pattern, fps=25)
+    assert (conformed.scale, conformed.shift, conformed.gone, conformed.new) == (1.0, (0.0, 0.0), [5], [])
+    assert conformed.same == dict(enumerate(order, 101)) and conformed.redrawn == {}
+    assert conformed.went == {old: new for new, old in enumerate(order, 101)}
+    moved = session.document()
+    assert (moved["footage"]["pattern"], moved["footage"]["first"], moved["footage"]["fps"]) == (pattern, 101, 25)
+    keys = [part["keys"] for part in moved["parts"]]
+    assert [sorted(each) for each in keys] == [["101", "106", "112"]] * 2
+    assert keys[0]["106"] == before["parts"][0]["keys"]["6"]
+    assert moved["parts"][0]["tracks"]["105"] == before["parts"][0]["tracks"]["4"]

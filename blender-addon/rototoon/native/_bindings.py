@@ -61,6 +61,9 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
     "rototoon_session_set_footage": (
         (2, "footage_length", ctypes.c_size_t),
     ),
+    "rototoon_session_conform": (
+        (2, "options_length", ctypes.c_size_t),
+    ),
     "rototoon_session_add_part": (
         (2, "part_length", ctypes.c_size_t),
     ),
@@ -389,6 +392,16 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_session_parts.restype = ctypes.c_int32
     library.rototoon_session_parts.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_conform.restype = ctypes.c_int32
+    library.rototoon_session_conform.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        RototoonProgress,
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

@@ -384,6 +384,31 @@ RototoonStatus rototoon_session_parts(const struct RototoonSession *session,
                                       struct RototoonText **names,
                                       struct RototoonText **error);
 
+// Moves the document to footage that was delivered again: of another size, with other frame numbers, with drawings added, left out, held
+// longer or drawn again. The pictures of both footages are compared. `rototoon_session_document` then gives the conformed document, whose footage is the new
+// one.
+//
+// `options` is a JSON object. `pattern` names the files of the new footage, with one `%d` or `%0Nd`, relative to the folder of the session. All other
+// fields may be left out: `frames`, a list of the first and the last frame of the new footage, by default those of all files; `fps`, its frames a
+// second, by default as before; `hold_gaps`, whether a frame without a file shows the picture before it, by default as before; `scale`, pixels of the new picture for each
+// pixel of the old one, and `shift`, two numbers, the place of the old picture's corner in the new one, by default found by the pictures;
+// `frame_offset`, what is added to the numbers of frames: then no pictures are compared, the old footage may be gone, the scale is that of the sizes
+// and the shift 0, unless they are given; `threads`, 0 for one per core, which does not change the result.
+//
+// `report` is JSON: `{"scale": number, "shift": [x, y], "frames": {"new frame": shows}, "went": {"old frame": new frame}, "gone": [old frame],
+// "warnings": [text]}`.
+//
+// - `shows` is `{"same": old frame}`, `{"redrawn": old frame}` where a drawing was drawn again, or `{"new": true}`.
+// - `went` has the frame to which the artist's work on an old frame has gone. Old frames whose drawing is gone are in `gone`.
+// - `warnings` name what did not simply go with its drawing.
+RototoonStatus rototoon_session_conform(const struct RototoonSession *session,
+                                        const uint8_t *options,
+                                        size_t options_length,
+                                        RototoonProgress progress,
+                                        void *user,
+                                        struct RototoonText **report,
+                                        struct RototoonText **error);
+
 // Adds a part at the end. `part` is JSON in the form of the document's `parts`.
 RototoonStatus rototoon_session_add_part(const struct RototoonSession *session,
                                          const uint8_t *part,

@@ -4,9 +4,9 @@
 //! header.
 //!
 //! The crate has two layers. The outer one is the exported functions: [`session_abi`],
-//! [`session_edit_abi`], [`session_track_abi`], [`traced_abi`], [`filled_abi`], [`strokes_abi`], [`tween_abi`],
+//! [`session_edit_abi`], [`session_track_abi`], [`session_conform_abi`], [`traced_abi`], [`filled_abi`], [`strokes_abi`], [`tween_abi`],
 //! [`breakdown_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
-//! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`filled`], [`edit`], [`options`], [`matching`], [`strokes`],
+//! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`filled`], [`conformed`], [`edit`], [`options`], [`matching`], [`strokes`],
 //! [`sheet`], [`style`], [`choosing`], [`work`].
 //!
 //! # Contract
@@ -45,6 +45,7 @@ pub mod breakdown;
 pub mod breakdown_abi;
 pub mod callback;
 mod choosing;
+pub mod conformed;
 pub mod edit;
 pub mod entry;
 pub mod filled;
@@ -57,6 +58,7 @@ pub mod outcomes;
 mod pool;
 pub mod session;
 pub mod session_abi;
+pub mod session_conform_abi;
 pub mod session_edit_abi;
 pub mod session_track_abi;
 pub mod sheet;

@@ -1,5 +1,6 @@
 //! The session behind a session handle: a document, its pictures, and the results that tracking keeps for reuse.
 
+use crate::conformed;
 use crate::filled::{self, RototoonFilled};
 use crate::options::Options;
 use crate::status::Failure;
@@ -285,6 +286,21 @@ impl Session {
     /// The painted regions of the document.
     pub fn filled(&self) -> Result<RototoonFilled, Failure> {
         RototoonFilled::of(&self.document.filled().map_err(Failure::error)?)
+    }
+
+    /// Moves the document to footage that was delivered again. Returns what became of the frames as JSON.
+    pub fn conform(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
+        let asked = conformed::Asked::parse(options)?;
+        let conformed = work::run(asked.threads, go_on, |progress: &dyn Progress| {
+            let new = asked.footage(&self.folder);
+            pipeline::conform(&self.document, &self.folder, &new, progress).map_err(|error| match error {
+                PipelineError::Cancelled(cancelled) => cancelled.into(),
+                other => Failure::error(other),
+            })
+        })?;
+        let report = conformed.report().to_string();
+        self.put(conformed.document);
+        Ok(report)
     }
 
     /// Drops pictures and solved spans. After a panic they may be half-written.

@@ -1,6 +1,7 @@
 //! Tests of the ABI from the side of a foreign caller: pointers, statuses, texts.
 
 mod clips;
+mod conforming;
 mod fills;
 mod saving;
 

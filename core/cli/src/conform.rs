@@ -5,14 +5,12 @@ use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::conform::Given;
 use rototoon::geometry::Point;
-use rototoon::pipeline::{self, Conformed, NewFootage, PipelineError};
+use rototoon::pipeline::{self, NewFootage, PipelineError};
 use rototoon::project::output::check_writable;
 use rototoon::project::place::folder_for;
 use rototoon::project::schema::{MAX_COORDINATE, MAX_FPS, MIN_FPS};
 use rototoon::project::{Document, Inputs, write_whole};
-use rototoon::scene::conform::Source;
 use rototoon::scene::parameters::Stage;
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// The subcommand.
@@ -85,6 +83,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         fps: given.get_one("fps").copied(),
         given: Given { scale: given.get_one("scale").copied(), shift: given.get_one("shift").copied() },
         offset: given.get_one("frame-offset").copied(),
+        held: None,
     };
     let report = given.get_one::<PathBuf>("report");
     let inputs = project::inputs(&document, from);
@@ -104,7 +103,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         line("warning", &format!("{}: {note}", from.display()));
     }
     if let Some(path) = report {
-        write_whole(path, format!("{:#}\n", reported(&conformed)).as_bytes())?;
+        write_whole(path, format!("{:#}\n", conformed.report()).as_bytes())?;
     }
     save(conformed.document, to)
 }
@@ -127,24 +126,4 @@ fn save(mut document: Document, to: &Path) -> Result<(), Failure> {
         _ => pipeline::relocate(&mut document, here, &folder_for(to, here)),
     }
     Ok(document.save(to)?)
-}
-
-/// What became of each frame.
-fn reported(conformed: &Conformed) -> Value {
-    let conform = &conformed.conform;
-    let frame = |(frame, source): (_, &Source)| {
-        let shows = match source {
-            Source::Same(old) => json!({"same": old}),
-            Source::Redrawn(old) => json!({"redrawn": old}),
-            Source::New => json!({"new": true}),
-        };
-        (format!("{frame}"), shows)
-    };
-    json!({
-        "scale": conform.placement.scale,
-        "shift": conform.placement.shift.to_array(),
-        "frames": conform.frames.sources().iter().map(frame).collect::<serde_json::Map<_, _>>(),
-        "gone": conform.frames.removed().collect::<Vec<_>>(),
-        "warnings": conformed.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
-    })
 }

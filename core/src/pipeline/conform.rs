@@ -11,6 +11,7 @@ use crate::project::Document;
 use crate::project::conform::Note;
 use crate::scene::conform::{Conform, FrameMap, Placement, Source};
 use crate::scene::{Footage, FrameNumber, FramePattern, Progress};
+use serde_json::{Map, Value, json};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,8 @@ pub struct NewFootage {
     pub given: Given,
     /// What is added to the numbers of frames. Then no picture is compared.
     pub offset: Option<FrameNumber>,
+    /// Whether a frame without a file shows the picture before it; `None` takes what holds for the old footage.
+    pub held: Option<bool>,
 }
 
 /// A document for its new footage.
@@ -87,7 +90,7 @@ fn footage(new: &NewFootage, old: &Footage) -> Result<Footage, PipelineError> {
     let all = first..=existing.last().copied().unwrap_or(first);
     let range = new.frames.clone().unwrap_or(all);
     let (first, last, fps) = (*range.start(), *range.end(), new.fps.unwrap_or(old.fps));
-    Ok(Footage { pattern: new.pattern.clone(), first, last, fps, width, height, held: old.held })
+    Ok(Footage { pattern: new.pattern.clone(), first, last, fps, width, height, held: new.held.unwrap_or(old.held) })
 }
 
 /// The placement without a look at pictures: as given, or what makes sizes of the same proportions equal.
@@ -149,6 +152,27 @@ impl Conformed {
         let filled = lists.into_iter().filter(|(_, frames)| !frames.is_empty());
         lines.extend(filled.map(|(what, frames)| format!("{what}: {}", super::report::runs(&frames))));
         lines
+    }
+
+    /// What became of frames and places as JSON: `scale` and `shift`; by new frame what it shows in `frames`; by old frame where the artist's work on
+    /// it went in `went`; the old frames that are `gone`; `warnings`. All that need a report of it write this one.
+    pub fn report(&self) -> Value {
+        let Conform { placement, frames } = &self.conform;
+        let shows = |source: &Source| match source {
+            Source::Same(old) => json!({"same": old}),
+            Source::Redrawn(old) => json!({"redrawn": old}),
+            Source::New => json!({"new": true}),
+        };
+        let sources = frames.sources().iter().map(|(frame, source)| (frame.to_string(), shows(source)));
+        let went = frames.old().filter_map(|old| Some((old.to_string(), json!(frames.made(old)?))));
+        json!({
+            "scale": placement.scale,
+            "shift": placement.shift.to_array(),
+            "frames": sources.collect::<Map<_, _>>(),
+            "went": went.collect::<Map<_, _>>(),
+            "gone": frames.removed().collect::<Vec<_>>(),
+            "warnings": self.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        })
     }
 }
 

@@ -95,6 +95,11 @@ impl FrameMap {
         &self.sources
     }
 
+    /// The frames of the old footage.
+    pub fn old(&self) -> RangeInclusive<FrameNumber> {
+        self.old.clone()
+    }
+
     /// The old frames that no new frame shows or stands for. A frame of a held drawing is none of them if another frame of it is shown.
     pub fn removed(&self) -> impl Iterator<Item = FrameNumber> + '_ {
         self.old.clone().filter(|&frame| self.made(frame).is_none())

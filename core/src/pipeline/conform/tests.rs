@@ -44,6 +44,7 @@ fn new(folder: &Path) -> NewFootage {
         fps: None,
         given: Given::default(),
         offset: None,
+        held: None,
     }
 }
 
@@ -71,6 +72,10 @@ fn contours_follow_the_pictures_to_a_larger_plate_with_handles_and_a_lost_drawin
             "gone from the old footage: 3",
         ]
     );
+    let report = conformed.report();
+    assert_eq!((&report["frames"]["1002"], &report["frames"]["1006"]), (&json!({"new": true}), &json!({"same": 4})));
+    assert_eq!(report["went"], json!({"1": 1003, "2": 1004, "4": 1005, "5": 1007, "6": 1008}));
+    assert_eq!((&report["gone"], &report["shift"]), (&json!([3]), &json!([16.0, 16.0])));
 }
 
 #[test]
