@@ -14,6 +14,7 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `style`               a character's motion given to another drawing
 `bones`               armatures
 `exchange`            documents and masks
+`conform`             an object moved to footage that was delivered again
 `farm`                many shots sent to a render farm, and their results
 `sample`              a small cartoon to try everything on
 `scripting`           functions for scripts, beside the operators
@@ -47,6 +48,7 @@ def _classes():
     from . import properties, ui
     from .bones.operators import CLASSES as bones
     from .capture.operators import CLASSES as capture
+    from .conform.operators import CLASSES as conform
     from .exchange.operators import CLASSES as exchange
     from .farm.operators import CLASSES as farm
     from .lines.operators import CLASSES as lines
@@ -56,7 +58,7 @@ def _classes():
     from .style.operators import CLASSES as style
     from .tween.operators import CLASSES as tween
 
-    own = capture + strokes + tween + lines + paint + style + bones + exchange + farm + sample
+    own = capture + strokes + tween + lines + paint + style + bones + exchange + conform + farm + sample
     return properties.CLASSES + own + ui.CLASSES
 
 

@@ -318,6 +318,28 @@ def copy_frame(layer: bpy.types.bpy_struct, source: int, number: int) -> None:
     layer.frames.copy(source, number)
 
 
+def put_frames(layer: bpy.types.bpy_struct, places: Mapping[int, Iterable[int]]) -> None:
+    """Puts each drawing on other frames: by its frame those on which it is to be. On several it is copied; without any it is removed.
+
+    A drawing that is on no frame of `places` stays where it is, so none of the new frames may have one.
+    """
+    before = sorted(places)
+    if all(list(places[number]) == [number] for number in before):
+        return
+    taken = [frame.frame_number for frame in layer.frames]
+    aside = min([*taken, *(number for each in places.values() for number in each)]) - 1 - len(before)
+    for k, number in enumerate(before):
+        layer.frames.move(number, aside + k)
+    for k, number in enumerate(before):
+        first, *others = list(places[number]) or [None]
+        for other in others:
+            layer.frames.copy(aside + k, other)
+        if first is None:
+            layer.frames.remove(aside + k)
+        else:
+            layer.frames.move(aside + k, first)
+
+
 def offsets(drawing: bpy.types.bpy_struct) -> np.ndarray:
     """Index of each stroke's first point, then the number of points: int32 (strokes + 1)."""
     position = drawing.attributes.get("position")

@@ -92,11 +92,8 @@ def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
     """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits."""
-    try:
-        source, entry = footage.background_source(camera)
-    except Problem:
-        return cameras.Placement()
-    if not _shows(source, ob):
+    entry = background_of(camera, ob)
+    if entry is None:
         return cameras.Placement()
     return cameras.Placement(
         entry.frame_method,
@@ -106,6 +103,15 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
         entry.use_flip_x,
         entry.use_flip_y,
     )
+
+
+def background_of(camera: bpy.types.Object, ob: bpy.types.Object) -> bpy.types.CameraBackgroundImage | None:
+    """The camera's background image if it shows the object's footage."""
+    try:
+        source, entry = footage.background_source(camera)
+    except Problem:
+        return None
+    return entry if _shows(source, ob) else None
 
 
 def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:

@@ -10,7 +10,7 @@ import bpy
 from mathutils import Matrix
 
 from . import camera as cameras
-from . import footage, guard
+from . import footage, guard, placement
 from . import grease_pencil as gp
 
 WIDTH = 10.0
@@ -188,6 +188,36 @@ def _background(camera, shot: Shot) -> None:
     if entry.image is None:
         entry.image, entry.frame_method, entry.alpha = image, "FIT", 1.0
     _time(entry.image_user, shot)
+
+
+def need_shown(ob) -> None:
+    """Raises a `Problem` if what shows an object's footage belongs to another file, so that it cannot show other footage."""
+    block = _shower(ob)
+    if block is not None:
+        guard.need_own(block)
+
+
+def show_instead(ob, shot: Shot) -> None:
+    """Shows other footage where an object's footage is to be seen, in the same place of the background or reference image. To be called while the object
+    has the old footage still."""
+    block = _shower(ob)
+    if block is None:
+        return
+    if block == ob.rototoon.reference:
+        block.data = load_sequence(shot)
+        _time(block.image_user, shot)
+        return
+    entry = placement.background_of(placement.camera_of(ob), ob)
+    entry.source, entry.image = "IMAGE", load_sequence(shot)
+    _time(entry.image_user, shot)
+
+
+def _shower(ob) -> bpy.types.ID | None:
+    """The reference image, or the data of the camera that shows an object's footage; `None` if it is not to be seen."""
+    if ob.rototoon.plane == "REFERENCE":
+        return ob.rototoon.reference
+    camera = placement.camera_of(ob)
+    return None if camera is None or placement.background_of(camera, ob) is None else camera.data
 
 
 def _reference(context, shot: Shot, name: str):

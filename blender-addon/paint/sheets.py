@@ -57,10 +57,10 @@ def read(ob, name: str) -> dict[int, Sheet]:
 def of_drawing(handle, kind: str) -> Sheet:
     """A drawing with a frame of this keyframe type."""
     content = st.read(handle)
-    return Sheet(content, _made(content), kind)
+    return Sheet(content, made_of(content), kind)
 
 
-def _made(content: st.Content) -> np.ndarray:
+def made_of(content: st.Content) -> np.ndarray:
     """Which strokes are as painting made them."""
     made = content.strokes(gp.MADE).copy()
     if not made.any():

@@ -10,13 +10,15 @@ Frames are scene frames. Pixels are those of the footage: x right, y down, the o
 World points are in scene units. Every function takes an object of the current scene, and needs no active object and no window.
 
 Where an operator would report an error, a function raises `RuntimeError` with the same text, and nothing has changed. `keys` writes
-keys, `reading` reads contours, `work` tracks, `lines` traces and carries strokes, `paint` paints. `take_reports` gives what operators said.
+keys, `reading` reads contours, `work` tracks, `lines` traces and carries strokes, `paint` paints, `delivered` moves objects to new footage.
+`take_reports` gives what operators said.
 
-May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`.
+May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`, `conform`.
 """
 
 from ..common.reports import Report
 from ..common.reports import take as take_reports
+from .delivered import Moved, conform
 from .keys import set_key
 from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
 from .paint import Painted, Recoloured, Region, fill_drawings, fill_region, recolour, recolours, regions, remove_recolour
@@ -27,6 +29,7 @@ __all__ = [
     "Drawn",
     "End",
     "Line",
+    "Moved",
     "Painted",
     "Part",
     "Recoloured",
@@ -35,6 +38,7 @@ __all__ = [
     "Track",
     "Tracked",
     "carry_strokes",
+    "conform",
     "doubtful_lines",
     "ends",
     "fill_drawings",

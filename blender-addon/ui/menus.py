@@ -66,7 +66,7 @@ class ROTOTOON_MT_style(_Menu):
 class ROTOTOON_MT_footage(_Menu):
     bl_idname = "ROTOTOON_MT_footage"
     bl_label = "Footage"
-    names = ("footage_from_file", "footage_from_camera", "footage_from_reference")
+    names = ("footage_from_file", "footage_from_camera", "footage_from_reference", "", "conform")
 
 
 class ROTOTOON_MT_main(_Menu):

@@ -34,6 +34,7 @@ class ROTOTOON_PT_footage(Panel, bpy.types.Panel):
         column.operator("rototoon.footage_from_reference", text="From Reference Image", icon="IMAGE_REFERENCE")
         if settings is None or not settings.pattern:
             return
+        layout.operator("rototoon.conform", icon="FILE_REFRESH")
         column = layout.column()
         column.use_property_split = True
         column.use_property_decorate = False

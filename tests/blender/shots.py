@@ -70,6 +70,33 @@ def drawn(number):
     return png(picture)
 
 
+SCALE, BORDER = 2, 16
+"""Of footage that is delivered again: how much larger the old picture is, and the border around it, in pixels."""
+
+
+def placed(points):
+    """Where places of the old picture are in that of `drawn_again`."""
+    return np.asarray(points) * SCALE + BORDER
+
+
+@cache
+def drawn_again(number, redrawn=False):
+    """Picture `number` as a file, larger and with a border. If it is `redrawn`, it has a ring in place of the diamond."""
+    height, width = (SIZE[k] * SCALE + 2 * BORDER for k in (1, 0))
+    xs, ys = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+    picture = np.full((height, width, 3), (235, 228, 210), np.uint8)
+    for shape, colour in ((diamond(number), (50, 90, 200)), (square(number), (205, 50, 45))):
+        centre = shape.mean(0)
+        if redrawn and colour[2] == 200:
+            away = np.hypot(xs - placed(centre)[0], ys - 60)
+            picture[away < 50] = (25, 20, 30)
+            picture[away < 44] = (90, 160, 80)
+            continue
+        picture[inside(placed(shape), xs, ys)] = (25, 20, 30)
+        picture[inside(placed(centre + (shape - centre) * 0.88), xs, ys)] = colour
+    return png(picture)
+
+
 def set_up(folder, **options):
     """A scene with the sequence in a camera's background and an object to draw on, made active."""
     picked = draw_sequence(folder / "frames", count=COUNT)

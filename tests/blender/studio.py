@@ -281,6 +281,13 @@ def _ink_active(addon, ob):
     ob.data.layers.active = ob.data.layers[INK]
 
 
+def _delivered_again(addon, ob):
+    folder = Path(bpy.path.abspath("//again"))
+    folder.mkdir(exist_ok=True)
+    for number in range(shots.COUNT):
+        (folder / f"new_{number + 101}.png").write_bytes(shots.drawn_again(number))
+
+
 _C, _I, _L, _P = frozenset({CONTOURS}), frozenset({INK, FRONT}), frozenset({LINES}), frozenset({PAINT})
 _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
@@ -292,6 +299,9 @@ OPERATORS = {
     "clear_in_betweens": Call(_I, prepare=_in_between),
     "clear_lines": Call(_L, prepare=_traced),
     "collect_results": Call(_C, _C, options={"directory": "{folder}/farm"}),
+    "conform": Call(
+        _C | {SNAPPED, LIMBS}, _C | {SNAPPED, LIMBS}, prepare=_delivered_again, options={"filepath": "{folder}/again/new_101.png"}
+    ),
     "contours_to_mask": Call(changes=False),
     "define_limbs": Call(frozenset({LIMBS}), prepare=_line_without_name, options={"point": "r_knee"}),
     "depth_mark": Call(options={"front": "Part 1", "behind": "Part 2"}),

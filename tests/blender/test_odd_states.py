@@ -130,7 +130,7 @@ STATES = (
 )  # fmt: skip
 
 
-LAST = ("drive_bones", "footage_from_camera", "footage_from_file", "footage_from_reference", "import_document", "setup")
+LAST = ("conform", "drive_bones", "footage_from_camera", "footage_from_file", "footage_from_reference", "import_document", "setup")
 """Operators that change more than the object: the armature, the scene, its camera. They are called after all others."""
 
 

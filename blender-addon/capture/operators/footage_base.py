@@ -41,9 +41,13 @@ class FootageOperator(Long):
 
     def finish(self, context, _work) -> str:
         """Reads the size of the pictures, and applies them."""
+        return self.apply(context, self.shot(context))
+
+    def shot(self, context) -> stage.Shot:
+        """The footage, with the size of its pictures. What there is to say of its gaps and of the cache is warned of."""
         shot, note = self._movie_shot(context) if self._source.movie else self._sequence_shot(context)
         self.warn(note)
-        return self.apply(context, shot)
+        return shot
 
     def _movie_shot(self, context) -> tuple[stage.Shot, str]:
         frames = movie.cached(self._source.path, self._cache)

@@ -1,0 +1,130 @@
+"""An object moved to its new footage: all changes, in one go.
+
+Whatever may be refused is looked at before. So the first change comes when nothing can fail any more, and there is no state between the old footage
+and the new one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..blender import camera as cameras
+from ..blender import grease_pencil as gp
+from ..blender import guard, marks, stage
+from ..blender import strokes as st
+from ..capture import sessions
+from . import comparing, layers, looks, notes, plan
+from .placing import Placing
+from .times import Times
+
+Changes = dict[tuple[str, int, int], dict[str, np.ndarray]]
+"""By layer, old frame and new frame the attributes of a drawing that get other values."""
+
+
+@dataclass
+class Ready:
+    """Everything that is to be written."""
+
+    plan: plan.Plan
+    changes: Changes
+    still: bool
+    """Whether neither the camera nor the object moves."""
+
+
+def preparing(ob, compared: comparing.Compared, times: Times, size: tuple[int, int]) -> Iterator[float]:
+    """Looks at everything, in steps. Changes nothing. Returns what is to be written."""
+    made = yield from plan.making(ob, times)
+    asides = {layers.left_over(layer.name) for layer in made.layers for drawing in layer.drawings if drawing.aside is not None}
+    guard.need_named(ob, sorted(asides), hidden=True)
+    names = [layer.name for layer in made.layers]
+    points = {k: layer.points() for k, layer in enumerate(made.layers)}
+    every = [drawing for layer in made.layers for drawing in layer.drawings]
+    frames = {drawing.frame for drawing in every}
+    new = {frame for drawing in every for frame in _places(drawing)}
+    placing = Placing(ob, names, {k: each for k, each in points.items() if len(each)}, frames, new, compared.found, size)
+    ready = Ready(made, {}, placing.still)
+    for layer in made.layers:
+        for drawing in layer.drawings:
+            for frame in _places(drawing):
+                changed = placing.changed(layer.name, drawing.content, drawing.frame, frame)
+                if "radius" in changed:
+                    changed[gp.LOOK] = looks.followed(drawing.content, changed)
+                ready.changes[layer.name, drawing.frame, frame] = changed
+            yield 0.0
+    return ready
+
+
+def _places(drawing: plan.Drawing) -> list[int]:
+    return drawing.targets + ([] if drawing.aside is None else [drawing.aside])
+
+
+def writing(ob, ready: Ready, compared: comparing.Compared, times: Times, shot: stage.Shot) -> Iterator[float]:
+    """Writes everything, in steps."""
+    stage.show_instead(ob, shot)
+    stage.assign(ob, shot)
+    comparing.put(ob, compared, times)
+    sessions.drop(ob)
+    for k, made in enumerate(ready.plan.layers):
+        _keep_left_over(ob, made, ready.changes)
+        _write(ob, made, ready.changes)
+        yield k / len(ready.plan.layers)
+    notes.follow(ob, ready.plan, ready.changes)
+    ob.data.update_tag()
+
+
+def _keep_left_over(ob, made: plan.Layer, changes: Changes) -> None:
+    """Draws on the hidden layer what is left over, before it leaves its own."""
+    kept = [drawing for drawing in made.drawings if drawing.aside is not None]
+    if not kept:
+        return
+    matrix = _to_object(ob, gp.find_layer(ob, made.name))
+    is_new = gp.find_layer(ob, layers.left_over(made.name)) is None
+    layer = gp.layer(ob, layers.left_over(made.name))
+    gp.make_frames(layer, [drawing.aside for drawing in kept], gp.KEYFRAME)
+    handles = {frame: handle for frame, (handle, _) in gp.drawings(layer).items()}
+    for drawing in kept:
+        content = looks.with_values(drawing.content, changes[made.name, drawing.frame, drawing.aside])
+        content.point["position"] = (content.point["position"] @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
+        own = np.setdiff1d(np.arange(len(content.sizes)), drawing.results)
+        st.add(handles[drawing.aside], st.chosen(content, own))
+    if is_new:
+        layer.hide = True
+
+
+def _to_object(ob, layer) -> np.ndarray:
+    """A layer's points to those of a layer without a parent and a place of its own."""
+    return np.linalg.inv(np.array(ob.matrix_world, np.float64)) @ cameras.layer_to_world(ob, layer)
+
+
+def _write(ob, made: plan.Layer, changes: Changes) -> None:
+    layer = gp.find_layer(ob, made.name)
+    gp.put_frames(layer, {drawing.frame: drawing.targets for drawing in made.drawings})
+    by_target = {new: drawing for drawing in made.drawings for new in drawing.targets}
+    changed = {new for new, drawing in by_target.items() if changes[made.name, drawing.frame, new] or drawing.drop or drawing.keys.get(new)}
+    gp.make_own(layer, changed)
+    handles = {frame: handle for frame, (handle, _) in gp.drawings(layer).items()}
+    for new in sorted(changed):
+        drawing = by_target[new]
+        values = changes[made.name, drawing.frame, new]
+        for name, each in values.items():
+            gp.put(handles[new], name, each)
+        for stroke in drawing.keys.get(new, ()):
+            _make_key(handles[new], stroke)
+        if drawing.drop and drawing.results:
+            gp.remove_strokes(handles[new], drawing.results)
+        gp.points_changed(handles[new])
+    keyed = {new: gp.KEYFRAME for new, drawing in by_target.items() if drawing.keys.get(new)}
+    gp.set_keyframe_type(layer, keyed)
+    marks.note(ob.data, made.name, {new for new in changed if by_target[new].marked})
+
+
+def _make_key(handle, stroke: int) -> None:
+    """Makes a generated contour the artist's."""
+    made = gp.value(handle, gp.MADE, len(gp.offsets(handle)) - 1)
+    made[stroke] = False
+    gp.put(handle, gp.MADE, made)
+
+
