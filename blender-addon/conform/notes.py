@@ -49,6 +49,8 @@ def _span_sum(content: st.Content) -> int:
 
 def _lines(layer: plan.Layer, changes: Changes) -> line_records.Layer:
     old, new = layer.lines, line_records.Layer()
+    # An end is a traced drawing without strokes: Trace Drawing may draw there again.
+    new.sums = dict.fromkeys(layer.ends, line_records.checksum(np.zeros((0, 3)), np.zeros(0), np.zeros(0)))
     for drawing in layer.drawings:
         for target in drawing.targets:
             known = old.sums.get(drawing.frame)

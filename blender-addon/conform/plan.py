@@ -5,7 +5,8 @@ point says so. It goes to one frame, also if its picture was drawn again, since 
 contours without a correction are left out, for Track makes them again. Of two drawings that meet on one frame, the one whose own frame it is stays there. The other one,
 and a drawing whose picture is gone, is left over.
 
-A generated drawing goes to all frames that show its picture as it was. A contour gets a drawing on each of them; on other layers the first one is held. In-betweens go
+A generated drawing goes to all frames that show its picture as it was, or that of a frame on which it was held. Contours get a drawing on each of them; on other layers neighbouring
+frames hold the first one. Where a new drawing follows, or one that was drawn again, an empty generated drawing ends the result, for Blender would show it on. In-betweens go
 along with the frames of their two keys, because they are drawn from these.
 
 Where the first or the last key of a part is left over, the nearest contour that was tracked becomes its key, so that the part does not end early.
@@ -74,6 +75,10 @@ class Layer:
     """Spans that lost a key, by their old frames."""
     held: set[int]
     """New frames that hold the drawing before them."""
+    ends: list[int]
+    """New frames with an empty generated drawing, where a result would be shown on."""
+    again: list[int]
+    """New frames on which results were left out, since the drawing was drawn again."""
 
     def points(self) -> np.ndarray:
         """The points that show the plane of the drawing: the artist's if there are any."""
@@ -113,12 +118,9 @@ def making(ob, times: Times) -> Iterator[float]:
             for drawing in drawings:
                 place = index[layer.name], drawing.frame
                 _sort_contours(drawing, found.drawings[place], corrected[place])
-        contoured = layer.name in index
-        held = _place(layer.name, drawings, spans, times, contoured)
-        held |= {new for old in holds.read(ob.data, layer.name) for new in times.shown(old)}
-        held -= {target for drawing in drawings for target in drawing.targets}
-        made = Layer(layer.name, drawings, lines.get(layer.name), spans.alive, spans.next_track, spans.broken, set() if contoured else held)
-        plan.layers.append(made)
+        held = _place(ob, layer.name, drawings, spans, times, layer.name in index)
+        ends, again = _ends(drawings, spans, times), _again(drawings, times)
+        plan.layers.append(Layer(layer.name, drawings, lines.get(layer.name), spans.alive, spans.next_track, spans.broken, held, ends, again))
     _replace_keys(plan, found, index)
     names = {(found.layer_names[stroke.layer], frame): [] for part in found.parts for frame, stroke in part.keys.items()}
     for part in found.parts:
@@ -181,12 +183,13 @@ def _sort_contours(drawing: Drawing, read: contours.Drawing, corrected: np.ndarr
     own = [stroke.index for stroke in read.strokes if not stroke.made or corrected[stroke.index]]
     drawing.results = [stroke.index for stroke in read.strokes if stroke.made and not corrected[stroke.index]]
     drawing.artists = bool(own) or read.kind != gp.GENERATED
-    drawing.blank = not own
+    drawing.blank = not own if drawing.artists else not drawing.results
 
 
-def _place(name: str, drawings: list[Drawing], spans: Spans, times: Times, contoured: bool) -> set[int]:
+def _place(ob, name: str, drawings: list[Drawing], spans: Spans, times: Times, contoured: bool) -> set[int]:
     """Gives each drawing its frames. Returns new frames that hold the drawing before them."""
-    taken: dict[int, Drawing] = {}
+    noted, there = holds.read(ob.data, name), {drawing.frame for drawing in drawings}
+    taken: set[int] = set()
     held: set[int] = set()
     for drawing in sorted(drawings, key=lambda each: (not each.artists, not times.has_own(each.frame), each.frame)):
         if layers.is_left_over(name):
@@ -196,16 +199,47 @@ def _place(name: str, drawings: list[Drawing], spans: Spans, times: Times, conto
             new = times.went(drawing.frame) if drawing.artists else spans.target(drawing.frame, times)
             wanted = [] if new is None else [new]
         else:
-            wanted = times.shown(drawing.frame)
+            wanted = _shown(drawing.frame, noted - there, times)
         if not drawing.artists and not contoured:
-            held |= set(wanted[1:])
-            wanted = wanted[:1]
+            held |= {new for new in wanted if new - 1 in wanted}
+            wanted = [new for new in wanted if new - 1 not in wanted]
         drawing.targets = [new for new in wanted if new not in taken]
-        taken |= dict.fromkeys(drawing.targets, drawing)
+        taken |= set(drawing.targets)
         drawing.drop = any(new in times.redrawn for new in drawing.targets)
         if drawing.artists and not drawing.targets and not drawing.blank:
             drawing.aside, drawing.drop = drawing.frame + times.shift, True
-    return held
+    return held - taken
+
+
+def _shown(frame: int, held: set[int], times: Times) -> list[int]:
+    """The new frames that show a result, rising. `held` are old frames that hold the drawing before them."""
+    found, last = set(times.shown(frame)), frame
+    while last + 1 in held:
+        last += 1
+        found |= set(times.shown(last))
+    new = times.went(frame)
+    if not found and new is not None and new not in times.redrawn:
+        # Another frame that shows the same drawing.
+        found = {new}
+    return sorted(found)
+
+
+def _ends(drawings: list[Drawing], spans: Spans, times: Times) -> list[int]:
+    """The frames on which a result must not be shown on."""
+    at = {new: not drawing.artists and drawing.frame not in spans.made and not drawing.blank for drawing in drawings for new in drawing.targets}
+    found = []
+    for new in sorted(times.redrawn | set(times.new)):
+        before = max((frame for frame in at if frame <= new), default=None)
+        if before is not None and before < new and at[before]:
+            at[new] = False
+            found.append(new)
+    return found
+
+
+def _again(drawings: list[Drawing], times: Times) -> list[int]:
+    """The frames that were drawn again, and had a result."""
+    left = {times.went(drawing.frame) for drawing in drawings if not drawing.artists and not drawing.targets}
+    return sorted(times.redrawn & (left | {new for drawing in drawings if drawing.drop and drawing.results for new in drawing.targets}))
 
 
 def _replace_keys(plan: Plan, found: contours.Contours, index: dict[str, int]) -> None:

@@ -39,6 +39,8 @@ def warnings(plan: Plan, times: Times) -> list[str]:
             f'{_what(plan, layer.name, drawing.frame)} on {drawing.frame}: left over, kept on {drawing.aside} of the hidden layer "{layers.left_over(layer.name)}"'
             for drawing in sorted(aside, key=lambda each: each.frame)
         ]
+        if layer.again:
+            found.append(f'layer "{layer.name}": what was generated is left out on {listed(layer.again)}, since the drawing was drawn again')
         if layer.broken:
             spans = " and ".join(f"{first} to {last}" for first, last in sorted(layer.broken))
             found.append(f'layer "{layer.name}": the in-betweens from {spans} of the old footage are left out, since a key is gone')

@@ -102,6 +102,7 @@ def _to_object(ob, layer) -> np.ndarray:
 def _write(ob, made: plan.Layer, changes: Changes) -> None:
     layer = gp.find_layer(ob, made.name)
     gp.put_frames(layer, {drawing.frame: drawing.targets for drawing in made.drawings})
+    gp.make_frames(layer, made.ends, gp.GENERATED)
     by_target = {new: drawing for drawing in made.drawings for new in drawing.targets}
     changed = {new for new, drawing in by_target.items() if changes[made.name, drawing.frame, new] or drawing.drop or drawing.keys.get(new)}
     gp.make_own(layer, changed)

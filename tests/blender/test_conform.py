@@ -314,3 +314,71 @@ def test_lines_and_in_betweens_stay_what_they_are(addon, library, fake, tmp_path
     assert bpy.ops.rototoon.track() == {"FINISHED"}
     assert "look like the keys again" not in said(addon).text
 
+
+
+def test_results_end_where_another_drawing_follows(addon, film, delivered):
+    """Traced lines on twos: the held frame alone is left of one drawing, and a result is not shown on over what was drawn again."""
+    gp, holds, drawings = addon("blender.grease_pencil"), addon("blender.holds"), addon("lines.drawings")
+    bpy.ops.rototoon.trace_drawing()
+    layer = film.data.layers["Lines"]
+    assert list(frames(addon, film, "Lines")) == list(range(1, 10))
+    # The drawing of frame 7, whose picture is gone, is held on 8.
+    gp.remove_frames(layer, [8])
+    holds.note(film.data, "Lines", [8], ())
+    bpy.ops.rototoon.conform(filepath=delivered)
+    now = {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in gp.drawings(layer).items()}
+    assert list(now) == list(range(1, 9)) and [frame for frame, count in now.items() if not count] == [4]
+    assert 'layer "Lines": what was generated is left out on 4, since the drawing was drawn again' in said(addon).text
+    (found,) = drawings.read(film, ["Lines"])
+    assert list(found.made) == list(range(1, 9)) and not found.keys and not found.edited
+    assert not holds.read(film.data, "Lines")
+    bpy.ops.rototoon.trace_drawing()
+    assert all(len(gp.offsets(handle)) > 1 for handle, _ in gp.drawings(layer).values())
+
+
+def test_a_reference_image_shows_the_new_footage(addon, library, fake, delivered, tmp_path):
+    ob = shots.set_up(tmp_path, plane="REFERENCE")
+    shots.draw(addon, ob, 1, [shots.diamond(0), shots.square(0)])
+    bpy.ops.rototoon.match_contours()
+    before = pixels(addon, ob)[1]
+    bpy.ops.rototoon.conform(filepath=delivered)
+    empty = ob.rototoon.reference
+    assert empty.data.filepath.endswith("new_1001.png") and empty.image_user.frame_start == -1
+    assert away(pixels(addon, ob)[1], before) < 0.5
+
+
+def test_a_movie_is_new_footage_too(addon, film, tmp_path):
+    from test_footage import make_movie
+
+    make_movie(tmp_path / "shot.mp4", sorted((tmp_path / "frames").iterdir())[1:])
+    addon("blender.preferences").preferences().cache_folder = str(tmp_path / "cache")
+    before = pixels(addon, film)
+    assert bpy.ops.rototoon.conform(filepath=str(tmp_path / "shot.mp4")) == {"FINISHED"}
+    addon("blender.preferences").preferences().cache_folder = ""
+    settings = film.rototoon
+    assert settings.movie.endswith("shot.mp4") and (settings.first, settings.last, settings.frame_offset) == (1, 8, 1)
+    after = pixels(addon, film)
+    assert [frame for frame, kind in frames(addon, film).items() if kind == "KEYFRAME"] == [2, 4, 7, 9]
+    assert all(np.abs(after[frame][part] - before[frame][part]).max() < 0.5 for frame in range(2, 10) for part in (1, 2))
+
+
+def test_another_object_with_the_footage_is_named(addon, film, delivered):
+    other = film.copy()
+    other.data, other.name = film.data.copy(), "other"
+    bpy.context.scene.collection.objects.link(other)
+    bpy.ops.rototoon.conform(filepath=delivered)
+    assert '"other" has the old footage still: conform it too' in said(addon).text
+    before = pixels(addon, other)
+    moved = addon("scripting").conform(other, delivered)
+    assert moved.gone == (7,) and away(pixels(addon, other)[8], before[9]) < 0.5
+
+
+def test_footage_with_nothing_in_common_is_refused(addon, film, tmp_path):
+    folder = tmp_path / "other"
+    folder.mkdir()
+    for number in range(5):
+        (folder / f"p_{number}.png").write_bytes(shots.png(np.full((90, 160, 3), 40 * number, np.uint8)))
+    before = everything(film)
+    with pytest.raises(RuntimeError, match="no frame of the new footage shows a drawing of the old one"):
+        bpy.ops.rototoon.conform(filepath=str(folder / "p_1.png"))
+    assert everything(film) == before
