@@ -1,7 +1,8 @@
 """Drawings with other values, and what the file has noted of their looks.
 
-A stroke keeps a checksum of its look since it was generated, so that a change of the artist shows. Radii count in it. So where a radius grows with the picture, the
-checksum follows if it was right before. It was made in one of several ways: by who generated the stroke, and in which version of Blender.
+A stroke keeps a checksum of its look since it was generated, so that a change of the artist shows. Radii count in it. So where a radius grows with
+the picture, the checksum follows if it was right before. It was made in one of several ways: by who generated the stroke, and in which version of
+Blender.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """The records that name drawings by frame, for the new frames: those of in-betweens, of traced lines, and of held drawings.
 
 A checksum that was right before is right afterwards. One that was not, since the artist has changed the drawing, stays as it was, so that the change
-still shows. The digest of a span says from what its in-betweens were drawn. It is forgotten where the span got another length, so that Update In-betweens draws it again.
+still shows. The digest of a span of in-betweens stays: it knows the points and the frames of the keys, so where either is another one now, Update
+In-betweens draws the span again.
 """
 
 from __future__ import annotations
@@ -77,6 +78,5 @@ def _tween(layer: plan.Layer, changes: Changes) -> tween_records.Layer:
     for first, ((begin, end), span) in layer.spans.items():
         sums = {at[frame].targets[0]: summed(frame, known) for frame, known in span.sums.items() if frame in at}
         ends = None if span.ends is None else (summed(first, span.ends[0]), summed(span.last, span.ends[1]))
-        same = end - begin == span.last - first and all(frame in at and at[frame].targets[0] - frame == begin - first for frame in span.sums)
-        spans[begin] = replace(span, last=end, digest=span.digest if same else "", sums=sums, ends=ends)
+        spans[begin] = replace(span, last=end, sums=sums, ends=ends)
     return tween_records.Layer(layer.next_track, spans)

@@ -1,7 +1,8 @@
 """Where the points of a drawing lie for the new footage.
 
-A point has a pixel of the old picture, and this pixel has a place in the new one. The point goes to the ray of that place. On the plane of the drawing it stays on it. Off the plane it
-keeps its distance: along the ray if rays are parallel, and as a share of the plane's distance through a perspective camera.
+A point has a pixel of the old picture, and this pixel has a place in the new one. The point goes to the ray of that place. On the plane of the
+drawing it stays on it. Off the plane it keeps its distance: along the ray if rays are parallel, and as a share of the plane's distance through a
+perspective camera.
 
 Radii grow as a pixel of the old picture does. Pixels that strokes keep, such as where Paint Bucket was clicked, are placed as pixels.
 """

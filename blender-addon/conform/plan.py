@@ -1,13 +1,13 @@
 """What becomes of each drawing of an object. Changes nothing.
 
-A drawing is the artist's if its frame is no generated one, if it has a stroke of the artist, or if the artist has changed it: a mark, a checksum, a pin or a moved
-point says so. It goes to one frame, also if its picture was drawn again, since only the artist can say whether it still fits. On such a frame, generated
-contours without a correction are left out, for Track makes them again. Of two drawings that meet on one frame, the one whose own frame it is stays there. The other one,
-and a drawing whose picture is gone, is left over.
+A drawing is the artist's if its frame is no generated one, if it has a stroke of the artist, or if the artist has changed it: a mark, a checksum, a
+pin or a moved point says so. It goes to one frame, also if its picture was drawn again, since only the artist can say whether it still fits. On such
+a frame, generated contours without a correction are left out, for Track makes them again. Of two drawings that meet on one frame, the one whose own
+frame it is stays there. The other one, and a drawing whose picture is gone, is left over.
 
-A generated drawing goes to all frames that show its picture as it was, or that of a frame on which it was held. Contours get a drawing on each of them; on other layers neighbouring
-frames hold the first one. Where a new drawing follows, or one that was drawn again, an empty generated drawing ends the result, for Blender would show it on. In-betweens go
-along with the frames of their two keys, because they are drawn from these.
+A generated drawing goes to all frames that show its picture as it was, or that of a frame on which it was held. Contours get a drawing on each of
+them; on other layers neighbouring frames hold the first one. Where a new drawing follows, or one that was drawn again, an empty generated drawing
+ends the result, for Blender would show it on. In-betweens go along with the frames of their two keys, because they are drawn from these.
 
 Where the first or the last key of a part is left over, the nearest contour that was tracked becomes its key, so that the part does not end early.
 """
@@ -31,7 +31,6 @@ from ..tween import moved_keys
 from ..tween import records as tween_records
 from . import layers
 from .times import Times
-
 
 FLAT = 1e-4
 """Share of a layer's extent up to which a point lies on the front plane. Where most points do, the others must not tilt the plane."""

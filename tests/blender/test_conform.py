@@ -382,3 +382,39 @@ def test_footage_with_nothing_in_common_is_refused(addon, film, tmp_path):
     with pytest.raises(RuntimeError, match="no frame of the new footage shows a drawing of the old one"):
         bpy.ops.rototoon.conform(filepath=str(folder / "p_1.png"))
     assert everything(film) == before
+
+
+def test_paint_and_clicks_go_along(addon, film, delivered):
+    gp, sheets = addon("blender.grease_pencil"), addon("paint.sheets")
+    bpy.ops.rototoon.paint_bucket(place=(30.0, 35.0))
+    bpy.ops.rototoon.fill_drawings()
+    before = sheets.read(film, "Paint")
+    bpy.ops.rototoon.conform(filepath=delivered)
+    after = sheets.read(film, "Paint")
+    assert len(before) > 3
+    clicks = [content[1].content.strokes(gp.CLICK)[0] for content in (min(before.items()), min(after.items()))]
+    assert np.allclose(clicks[1][:2], shots.placed(clicks[0][:2])) and clicks[1][2] == 1
+    # A region on a drawing that was drawn again is left out.
+    assert list(after) == list(range(1, 9)) and not len(after[4].made)
+    for new, old in {1: 1, 2: 2, 3: 3, 5: 5, 6: 6, 7: 8, 8: 9}.items():
+        assert after[new].made.tolist() == before[old].made.tolist()
+
+
+def test_in_betweens_of_a_key_that_is_gone_are_left_out(addon, film, tmp_path):
+    import studio
+
+    studio._ink(addon, film, "Ink", 0.0, 5, (12, 8))
+    film.data.layers["Ink"].frames.copy(1, 9)
+    bpy.ops.rototoon.in_between(frames="ALL")
+    keys, records = addon("tween.keys"), addon("tween.records")
+    folder = tmp_path / "short"
+    folder.mkdir()
+    for number, step in enumerate(range(1, 9), 101):
+        (folder / f"cut_{number}.png").write_bytes(shots.drawn(step))
+    bpy.ops.rototoon.conform(filepath=str(folder / "cut_101.png"), timing="FRAME", frame=101)
+    assert 'layer "Ink": the in-betweens from 1 to 5 of the old footage are left out, since a key is gone' in said(addon).text
+    found = keys.frames_of(film.data.layers["Ink"], records.read(film.data)["Ink"])
+    assert (found.keys, found.made) == ([104, 108], [105, 106, 107])
+    assert list(frames(addon, film, "Left over: Ink")) == [100]
+    spans = records.read(film.data)["Ink"].spans
+    assert {first: (span.last, span.ends is not None) for first, span in spans.items()} == {104: (108, True)}

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...blender import footage, guard
+from ...blender import footage
 from ...blender.errors import Problem
 from ...capture.operators.footage_base import FootageOperator
 from ...capture.operators.footage_from_file import PictureFile
