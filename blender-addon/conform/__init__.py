@@ -22,5 +22,5 @@ objects still fit. So handles may lie before the scene's first frame.
 Limits: drawings on a layer that has nothing of Rototoon stay where they are, which the report says. So does all animation. A drawing that goes to the
 hidden layer loses its vertex groups. Another object with the same footage must be conformed for itself.
 
-May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`, `tween`, `exchange`.
+May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`, `tween`, `style`, `exchange`.
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..blender import grease_pencil as gp
 from ..lines import records as line_records
+from ..style import limbs
 from ..tween import records as tween_records
 
 LEFT_OVER = "Left over: "
@@ -11,10 +12,10 @@ LEFT_OVER = "Left over: "
 
 
 def ours(ob) -> list:
-    """The layers that go along with the footage, lowest first: those of contours, snapped lines, traced lines and paint, and all on which Rototoon has
+    """The layers that go along with the footage, lowest first: those of contours, snapped lines, traced lines, paint and limbs, and all on which Rototoon has
     noted anything. No array is read."""
     settings = ob.rototoon
-    named = {settings.lines_layer, settings.fills_layer}
+    named = {settings.lines_layer, settings.fills_layer, limbs.LAYER}
     for prefix in (settings.contours_layer, settings.snapped_layer):
         named |= {layer.name for layer in gp.layers(ob, prefix)}
     named |= tween_records.read(ob.data).keys() | line_records.read(ob.data).keys()

@@ -3,7 +3,8 @@
 A drawing is the artist's if its frame is no generated one, if it has a stroke of the artist, or if the artist has changed it: a mark, a checksum, a
 pin or a moved point says so. It goes to one frame, also if its picture was drawn again, since only the artist can say whether it still fits. On such
 a frame, generated contours without a correction are left out, for Track makes them again. Of two drawings that meet on one frame, the one whose own
-frame it is stays there. The other one, and a drawing whose picture is gone, is left over.
+frame it is stays there. Contours of the other one join it if it has none of their part, as where one key was drawn on each of two frames with one
+picture. The rest, and a drawing whose picture is gone, is left over.
 
 A generated drawing goes to all frames that show its picture as it was, or that of a frame on which it was held. Contours get a drawing on each of
 them; on other layers neighbouring frames hold the first one. Where a new drawing follows, or one that was drawn again, an empty generated drawing
@@ -58,6 +59,23 @@ class Drawing:
     """By target the strokes that become keys."""
     blank: bool = False
     """Whether there is nothing on it that could be lost."""
+    joined: int | None = None
+    """The frame on which some of its contours join another drawing."""
+    joining: list[int] = field(default_factory=list)
+    """These contours, as indices."""
+
+    @property
+    def places(self) -> list[int]:
+        """All frames on which something of it will be."""
+        return [*self.targets, *(frame for frame in (self.joined, self.aside) if frame is not None)]
+
+    def own(self) -> list[int]:
+        """The strokes of the artist on a drawing with contours, as indices."""
+        return sorted(set(range(len(self.content.sizes))) - set(self.results))
+
+    def where(self, stroke: int) -> list[int]:
+        """The frames on which a contour will be a contour still."""
+        return [self.joined] if stroke in self.joining else self.targets
 
 
 @dataclass
@@ -190,6 +208,7 @@ def _place(ob, name: str, drawings: list[Drawing], spans: Spans, times: Times, c
     noted, there = holds.read(ob.data, name), {drawing.frame for drawing in drawings}
     taken: set[int] = set()
     held: set[int] = set()
+    numbers: dict[int, set[int]] = {}
     for drawing in sorted(drawings, key=lambda each: (not each.artists, not times.has_own(each.frame), each.frame)):
         if layers.is_left_over(name):
             new = times.went(drawing.frame)
@@ -205,9 +224,23 @@ def _place(ob, name: str, drawings: list[Drawing], spans: Spans, times: Times, c
         drawing.targets = [new for new in wanted if new not in taken]
         taken |= set(drawing.targets)
         drawing.drop = any(new in times.redrawn for new in drawing.targets)
-        if drawing.artists and not drawing.targets and not drawing.blank:
+        if contoured and drawing.artists:
+            _join(drawing, wanted, numbers)
+        if drawing.artists and not drawing.targets and not drawing.blank and len(drawing.joining) < len(drawing.own()):
             drawing.aside, drawing.drop = drawing.frame + times.shift, True
     return held - taken
+
+
+def _join(drawing: Drawing, wanted: list[int], numbers: dict[int, set[int]]) -> None:
+    """Lets contours of a drawing join the one that has its frame. `numbers` are those of the parts that are on each frame already."""
+    parts = drawing.content.strokes(gp.PART)
+    for new in drawing.targets:
+        numbers[new] = {int(parts[stroke]) for stroke in drawing.own()}
+    for new in wanted if not drawing.targets else ():
+        joining = {int(parts[stroke]): stroke for stroke in reversed(drawing.own()) if parts[stroke] and int(parts[stroke]) not in numbers[new]}
+        if joining:
+            drawing.joined, drawing.joining = new, sorted(joining.values())
+            numbers[new] |= joining.keys()
 
 
 def _shown(frame: int, held: set[int], times: Times) -> list[int]:
@@ -245,14 +278,14 @@ def _replace_keys(plan: Plan, found: contours.Contours, index: dict[str, int]) -
     """Makes tracked contours keys where the first or the last key of a part is left over."""
     at = {(index[layer.name], drawing.frame): drawing for layer in plan.layers if layer.name in index for drawing in layer.drawings}
     for part in found.parts:
-        keys = {new for frame, stroke in part.keys.items() for new in at[stroke.layer, frame].targets}
+        keys = {new for frame, stroke in part.keys.items() for new in at[stroke.layer, frame].where(stroke.index)}
         made = {}
         for frame, stroke in part.made.items():
             drawing = at[stroke.layer, frame]
             if not (drawing.drop and stroke.index in drawing.results):
                 made |= {new: (drawing, stroke.index) for new in drawing.targets}
         for side, end in ((min, min(part.keys, default=None)), (max, max(part.keys, default=None))):
-            if end is None or at[part.keys[end].layer, end].targets or (len(part.keys) == 1 and keys):
+            if end is None or at[part.keys[end].layer, end].where(part.keys[end].index) or (len(part.keys) == 1 and keys):
                 continue
             new = side(made, default=None)
             if new is not None and new not in keys:

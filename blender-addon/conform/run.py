@@ -49,8 +49,9 @@ def finishing(ob, shot: stage.Shot, compared: comparing.Compared, begins: int | 
     there = times.Times(compared.found, old, offset)
     ready = yield from writing.preparing(ob, compared, there, (shot.width, shot.height))
     moved = any("position" in each for each in ready.changes.values())
-    warnings = [*telling.warnings(ready.plan, there), *telling.of_surroundings(ob, there, moved, ready.still), telling.of_scene(shot)]
+    warnings = [*telling.warnings(ready.plan, there), *telling.of_surroundings(ob, there, moved, ready.still)]
     yield from writing.writing(ob, ready, compared, there, shot)
-    return Done(compared.found, there, offset, telling.of_footage(compared.found, there), [text for text in warnings if text])
+    text = "; ".join(filter(None, (telling.of_footage(compared.found, there), telling.of_scene(shot))))
+    return Done(compared.found, there, offset, text, warnings)
 
 

@@ -43,22 +43,18 @@ def preparing(ob, compared: comparing.Compared, times: Times, size: tuple[int, i
     points = {k: layer.points() for k, layer in enumerate(made.layers)}
     every = [drawing for layer in made.layers for drawing in layer.drawings]
     frames = {drawing.frame for drawing in every}
-    new = {frame for drawing in every for frame in _places(drawing)}
+    new = {frame for drawing in every for frame in drawing.places}
     placing = Placing(ob, names, {k: each for k, each in points.items() if len(each)}, frames, new, compared.found, size)
     ready = Ready(made, {}, placing.still)
     for layer in made.layers:
         for drawing in layer.drawings:
-            for frame in _places(drawing):
+            for frame in drawing.places:
                 changed = placing.changed(layer.name, drawing.content, drawing.frame, frame)
                 if "radius" in changed:
                     changed[gp.LOOK] = looks.followed(drawing.content, changed)
                 ready.changes[layer.name, drawing.frame, frame] = changed
             yield 0.0
     return ready
-
-
-def _places(drawing: plan.Drawing) -> list[int]:
-    return drawing.targets + ([] if drawing.aside is None else [drawing.aside])
 
 
 def writing(ob, ready: Ready, compared: comparing.Compared, times: Times, shot: stage.Shot) -> Iterator[float]:
@@ -88,8 +84,7 @@ def _keep_left_over(ob, made: plan.Layer, changes: Changes) -> None:
     for drawing in kept:
         content = looks.with_values(drawing.content, changes[made.name, drawing.frame, drawing.aside])
         content.point["position"] = (content.point["position"] @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32)
-        own = np.setdiff1d(np.arange(len(content.sizes)), drawing.results)
-        st.add(handles[drawing.aside], st.chosen(content, own))
+        st.add(handles[drawing.aside], st.chosen(content, [stroke for stroke in drawing.own() if stroke not in drawing.joining]))
     if is_new:
         layer.hide = True
 
@@ -104,8 +99,9 @@ def _write(ob, made: plan.Layer, changes: Changes) -> None:
     gp.put_frames(layer, {drawing.frame: drawing.targets for drawing in made.drawings})
     gp.make_frames(layer, made.ends, gp.GENERATED)
     by_target = {new: drawing for drawing in made.drawings for new in drawing.targets}
+    met = {drawing.joined for drawing in made.drawings if drawing.joined is not None}
     changed = {new for new, drawing in by_target.items() if changes[made.name, drawing.frame, new] or drawing.drop or drawing.keys.get(new)}
-    gp.make_own(layer, changed)
+    gp.make_own(layer, changed | met)
     handles = {frame: handle for frame, (handle, _) in gp.drawings(layer).items()}
     for new in sorted(changed):
         drawing = by_target[new]
@@ -117,9 +113,22 @@ def _write(ob, made: plan.Layer, changes: Changes) -> None:
         if drawing.drop and drawing.results:
             gp.remove_strokes(handles[new], drawing.results)
         gp.points_changed(handles[new])
+    for drawing in made.drawings:
+        if drawing.joined is not None:
+            _join(handles[drawing.joined], drawing, changes[made.name, drawing.frame, drawing.joined])
     keyed = {new: gp.KEYFRAME for new, drawing in by_target.items() if drawing.keys.get(new)}
     gp.set_keyframe_type(layer, keyed)
     marks.note(ob.data, made.name, {new for new in changed if by_target[new].marked})
+
+
+def _join(handle, drawing: plan.Drawing, values: dict[str, np.ndarray]) -> None:
+    """Adds contours of a drawing to another one, in the place of generated ones of their parts."""
+    joining = st.chosen(looks.with_values(drawing.content, values), drawing.joining)
+    parts = gp.value(handle, gp.PART, len(gp.offsets(handle)) - 1)
+    gone = np.flatnonzero(np.isin(parts, joining.strokes(gp.PART)))
+    if len(gone):
+        gp.remove_strokes(handle, gone.tolist())
+    st.add(handle, joining)
 
 
 def _make_key(handle, stroke: int) -> None:

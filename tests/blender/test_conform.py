@@ -418,3 +418,30 @@ def test_in_betweens_of_a_key_that_is_gone_are_left_out(addon, film, tmp_path):
     assert list(frames(addon, film, "Left over: Ink")) == [100]
     spans = records.read(film.data)["Ink"].spans
     assert {first: (span.last, span.ends is not None) for first, span in spans.items()} == {104: (108, True)}
+
+
+def test_keys_on_two_frames_of_one_picture_join(addon, library, fake, tmp_path):
+    """The film is on twos. One part has its key on the first frame of a drawing, the other one on the second; the new film is on ones."""
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    again = tmp_path / "ones"
+    again.mkdir()
+    for number in range(10):
+        (folder / f"shot_{number + 1:03}.png").write_bytes(shots.drawn(number // 2))
+    for step in range(5):
+        (again / f"one_{step + 1}.png").write_bytes(shots.drawn(step))
+    bpy.ops.rototoon.setup(filepath=str(folder / "shot_001.png"))
+    ob = bpy.context.object
+    for frame in (1, 9):
+        shots.draw(addon, ob, frame, [shots.diamond(frame // 2), shots.square(frame // 2)])
+    bpy.ops.rototoon.match_contours()
+    shots.draw(addon, ob, 5, [shots.diamond(2)])
+    shots.draw(addon, ob, 6, [shots.square(2), shots.diamond(2)])
+    bpy.ops.rototoon.match_contours()
+    bpy.ops.rototoon.conform(filepath=str(again / "one_1.png"), timing="SCENE")
+    parts = {part.name: sorted(part.keys) for part in addon("capture.contours").read(ob).parts}
+    assert parts == {"Part 1": [1, 3, 5], "Part 2": [1, 3, 5]}
+    now = pixels(addon, ob)[3]
+    assert np.abs(now[1] - shots.diamond(2)).max() < 0.01 and np.abs(now[2] - shots.square(2)).max() < 0.01
+    # The diamond of the other frame is left over.
+    assert list(pixels(addon, ob, LEFT_OVER).values())[0].keys() == {1}

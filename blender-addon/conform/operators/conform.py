@@ -53,6 +53,11 @@ class ROTOTOON_OT_conform(PictureFile, FootageOperator, OnDrawing, bpy.types.Ope
         name="Shift", description="The place of the old picture's top left corner in the new picture, in pixels, if it is not to be found", size=2, default=(0.0, 0.0)
     )
 
+    def invoke(self, context, event):
+        """Called by Blender: the new footage has gaps as the old one has."""
+        self.hold_gaps = context.object.rototoon.hold_gaps
+        return super().invoke(context, event)
+
     def begin(self, context):
         """Checks the source and the layers, and compares. Frames of a movie go to the cache first."""
         self._ob = context.object
