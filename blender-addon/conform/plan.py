@@ -15,6 +15,7 @@ Where the first or the last key of a part is left over, the nearest contour that
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -23,6 +24,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import holds, marks
 from ..blender import strokes as st
+from ..blender.errors import Changed
 from ..capture import contours
 from ..lines import moved as moved_lines
 from ..lines import records as line_records
@@ -127,17 +129,19 @@ def making(ob, times: Times) -> Iterator[float]:
     index = {name: k for k, name in enumerate(found.layer_names)}
     lines = moved_lines.read(ob, [layer.name for layer in layers.ours(ob)])
     tween, plan = tween_records.read(ob.data), Plan([])
-    for layer in layers.ours(ob):
+    for name in [layer.name for layer in layers.ours(ob)]:
         yield 0.0
-        spans = Spans(layer, tween.get(layer.name), times)
-        drawings = _read(ob, layer, spans)
-        if layer.name in index:
+        spans = Spans(gp.find_layer(ob, name), tween.get(name), times)
+        drawings = yield from _reading(ob, name, spans)
+        if name in index:
             for drawing in drawings:
-                place = index[layer.name], drawing.frame
+                place = index[name], drawing.frame
+                if place not in found.drawings:
+                    raise Changed()
                 _sort_contours(drawing, found.drawings[place], corrected[place])
-        held = _place(ob, layer.name, drawings, spans, times, layer.name in index)
+        held = _place(ob, name, drawings, spans, times, name in index)
         ends, again = _ends(drawings, spans, times), _again(drawings, times)
-        plan.layers.append(Layer(layer.name, drawings, lines.get(layer.name), spans.alive, spans.next_track, spans.broken, held, ends, again))
+        plan.layers.append(Layer(name, drawings, lines.get(name), spans.alive, spans.next_track, spans.broken, held, ends, again))
     _replace_keys(plan, found, index)
     names = {(found.layer_names[stroke.layer], frame): [] for part in found.parts for frame, stroke in part.keys.items()}
     for part in found.parts:
@@ -175,14 +179,25 @@ class Spans:
         return new if new is None or not around or any(a < new < b for a, b in around) else None
 
 
-def _read(ob, layer, spans: Spans) -> list[Drawing]:
-    slots, painted, found = marks.Slots(ob.data), layer.name == ob.rototoon.fills_layer, []
-    with gp.copied(ob.data) as data:
-        for frame, (handle, kind) in gp.drawings(gp.find_layer_of(data, layer.name)).items():
-            content = st.read(handle)
-            same = marks.untouched(content, slots)
-            made = kind == gp.GENERATED and (frame in spans.made or _is_result(content, same, painted))
-            found.append(Drawing(frame, content, not made, marked=same is True, blank=not len(content.sizes)))
+def _reading(ob, name: str, spans: Spans) -> Iterator[float]:
+    """Reads the drawings of a layer, in steps as `contours.reading` does. Returns them in time order."""
+    slots, painted, found = marks.Slots(ob.data), name == ob.rototoon.fills_layer, []
+    waiting = sorted(gp.drawings(gp.find_layer(ob, name)))
+    while waiting:
+        until = time.perf_counter() + contours.SLICE
+        with gp.copied(ob.data) as data:
+            layer = gp.find_layer_of(data, name)
+            drawings = {} if layer is None else gp.drawings(layer)
+            while waiting and time.perf_counter() < until:
+                frame = waiting.pop(0)
+                if frame not in drawings:
+                    raise Changed()
+                handle, kind = drawings[frame]
+                content = st.read(handle)
+                same = marks.untouched(content, slots)
+                made = kind == gp.GENERATED and (frame in spans.made or _is_result(content, same, painted))
+                found.append(Drawing(frame, content, not made, marked=same is True, blank=not len(content.sizes)))
+        yield 0.0
     return found
 
 

@@ -64,15 +64,17 @@ def writing(ob, ready: Ready, compared: comparing.Compared, times: Times, shot: 
     comparing.put(ob, compared, times)
     sessions.drop(ob)
     for k, made in enumerate(ready.plan.layers):
-        _keep_left_over(ob, made, ready.changes)
         _write(ob, made, ready.changes)
         yield k / len(ready.plan.layers)
+    # The hidden layers of earlier runs have moved too by now, so their frames are those of the new footage.
+    for made in ready.plan.layers:
+        _keep_left_over(ob, made, ready.changes)
     notes.follow(ob, ready.plan, ready.changes)
     ob.data.update_tag()
 
 
 def _keep_left_over(ob, made: plan.Layer, changes: Changes) -> None:
-    """Draws on the hidden layer what is left over, before it leaves its own."""
+    """Draws on the hidden layer what is left over. The plan has its strokes."""
     kept = [drawing for drawing in made.drawings if drawing.aside is not None]
     if not kept:
         return

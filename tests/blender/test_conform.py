@@ -445,3 +445,20 @@ def test_keys_on_two_frames_of_one_picture_join(addon, library, fake, tmp_path):
     assert np.abs(now[1] - shots.diamond(2)).max() < 0.01 and np.abs(now[2] - shots.square(2)).max() < 0.01
     # The diamond of the other frame is left over.
     assert list(pixels(addon, ob, LEFT_OVER).values())[0].keys() == {1}
+
+
+def test_there_and_back(addon, film, delivered, tmp_path):
+    before = pixels(addon, film)
+    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=str(tmp_path / "frames" / "shot_001.png"))
+    settings = film.rototoon
+    assert (settings.width, settings.height, settings.first, settings.last) == (*shots.SIZE, 1, 9)
+    after = pixels(addon, film)
+    keys = [frame for frame, kind in frames(addon, film).items() if kind == "KEYFRAME"]
+    assert len(keys) == 3
+    for frame, old in zip(keys, (1, 4, 9)):
+        assert all(np.abs(after[frame][part] - before[old][part]).max() < 0.5 for part in (1, 2))
+    left = pixels(addon, film, LEFT_OVER)
+    assert len(left) == 1
+    assert all(np.abs(next(iter(left.values()))[part] - before[7][part]).max() < 0.5 for part in (1, 2))
+    assert LEFT_OVER + ".001" not in film.data.layers and not any(layer.name.count("Left over") > 1 for layer in film.data.layers)
