@@ -20,7 +20,8 @@ Scene frames: by default most drawings stay on the scene frames that they have, 
 objects still fit. So handles may lie before the scene's first frame.
 
 Limits: drawings on a layer that has nothing of Rototoon stay where they are, which the report says. So does all animation. A drawing that goes to the
-hidden layer loses its vertex groups. Another object with the same footage must be conformed for itself.
+hidden layer loses its vertex groups. Another object with the same footage must be conformed for itself; if both look through one camera, and its
+background image is not placed as Blender does by itself, give the other one the same background again before.
 
 May import: `rototoon`, `blender`, `common`, `capture`, `lines`, `paint`, `tween`, `style`, `exchange`.
 """

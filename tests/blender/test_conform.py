@@ -462,3 +462,13 @@ def test_there_and_back(addon, film, delivered, tmp_path):
     assert len(left) == 1
     assert all(np.abs(next(iter(left.values()))[part] - before[7][part]).max() < 0.5 for part in (1, 2))
     assert LEFT_OVER + ".001" not in film.data.layers and not any(layer.name.count("Left over") > 1 for layer in film.data.layers)
+
+
+def test_place_and_scale_may_be_given(addon, film, delivered):
+    before = pixels(addon, film)
+    with pytest.raises(RuntimeError, match="Scale: found 0.005, expected 0 or a number from 0.01"):
+        bpy.ops.rototoon.conform(filepath=delivered, scale=0.005)
+    assert pixels(addon, film).keys() == before.keys()
+    bpy.ops.rototoon.conform(filepath=delivered, scale=2.0, find_shift=False, shift=(16.0, 16.0))
+    assert "scaled by 2 and moved by 16.00, 16.00 px" in said(addon).text
+    assert away(pixels(addon, film)[8], before[9]) < 0.5
