@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x7eaa19b8d3cc18dd
+HEADER_HASH = 0x2096fa3f4efabb22
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0
