@@ -8,11 +8,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rototoon import Conformed, Session
+from rototoon.fills import Recolour
 
 from ..blender import footage, stage
 from ..capture import document, ends
 from ..common import jobs, kept
 from ..exchange import files, further
+from ..paint import recolours
 from .times import Pictures, Times
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -46,6 +48,8 @@ class Compared:
     found: Conformed
     document: dict[str, Any] = field(default_factory=dict)
     """The fields for the new footage."""
+    recolours: list[Recolour] = field(default_factory=list)
+    """The colours that become others, on frames of the new footage."""
 
 
 def pictures_of(ob) -> Pictures:
@@ -63,6 +67,7 @@ def worker(ob, shot: stage.Shot, asked: Asked) -> jobs.Worker:
     known["rototoon"] = document.VERSION
     known["footage"] = kept.fields(known.get("footage")) | footage.fields(ob, pattern)
     known["parts"] = [_part(item, settings.first) for item in settings.parts]
+    known["recolours"] = recolours.fields(ob)
     folder, options = os.path.dirname(pattern), asked.options()
     options |= {"frames": (shot.first, shot.last), "fps": shot.fps, "hold_gaps": shot.hold_gaps}
 
@@ -71,7 +76,7 @@ def worker(ob, shot: stage.Shot, asked: Asked) -> jobs.Worker:
         session = make(known, folder)
         try:
             found = session.conform(shot.pattern, progress=progress, **options)
-            return Compared(found, session.document())
+            return Compared(found, session.document(), session.recolours())
         finally:
             session.close()
 
@@ -93,6 +98,8 @@ def put(ob, compared: Compared, times: Times) -> None:
         item.extra = files.unknown_of_part(entry)
         there = ((times.picture(picture), reason) for picture, reason in ends.of(item))
         ends.put(item, [(picture, reason) for picture, reason in there if picture is not None])
+    if compared.recolours or recolours.entries(ob):
+        recolours.take(ob, compared.recolours)
     more = further.Further(ob)
     if more.drawings:
         there = {times.picture(int(picture)): fields for picture, fields in more.drawings.items()}

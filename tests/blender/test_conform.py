@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 import pytest
 import shots
+from test_paint_recolours import wet
 
 AGAIN, LOST = 3, 6
 """Steps of the film whose drawing was drawn again, or is gone."""
@@ -398,6 +399,19 @@ def test_paint_and_clicks_go_along(addon, film, delivered):
     assert list(after) == list(range(1, 9)) and not len(after[4].made)
     for new, old in {1: 1, 2: 2, 3: 3, 5: 5, 6: 6, 7: 8, 8: 9}.items():
         assert after[new].made.tolist() == before[old].made.tolist()
+
+
+def test_colours_that_become_others_go_along(addon, film, delivered):
+    bpy.ops.rototoon.paint_bucket(place=(30.0, 35.0))
+    bpy.ops.rototoon.fill_drawings()
+    old = film.data.materials[int(addon("paint.sheets").read(film, "Paint")[1].content.strokes("material_index")[0])]
+    scripting = addon("scripting")
+    for name, first, last in (("Wet", 5, 8), ("Dry", None, 3)):
+        wet(name, (0.2, 0.3, 0.1 * first if first else 0.9))
+        scripting.recolour(film, old.name, name, first, last)
+    bpy.ops.rototoon.conform(filepath=delivered)
+    # The picture of frame 7 is gone, so frame 8 moves up.
+    assert scripting.recolours(film) == [(old.name, "Wet", 5, 7), (old.name, "Dry", None, 3)]
 
 
 def test_in_betweens_of_a_key_that_is_gone_are_left_out(addon, film, tmp_path):

@@ -8,8 +8,6 @@ import pytest
 from line_stage import attribute, film, kinds, pictures, said  # noqa: F401 - fixtures
 from test_paint import LAYER, clicked, painted, places, read  # noqa: F401 - fixtures
 
-pytestmark = pytest.mark.long
-
 BODY, WET = "Paint edc29e", (0.2, 0.25, 0.35)
 
 
