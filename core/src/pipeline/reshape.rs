@@ -9,15 +9,15 @@
 //!   frames show of it ([`crate::reshape::examples`])
 //! - `lines`: the strokes and open contours, with the part on which they lie or on their own
 //! - `loose`: what parts and lines follow that no limb carries
+//! - `depths`: what is in front of what on each frame
 //! - `store`: the result in the document
 //! - `sunk`: parts that go through the ground
 //! - `told`: what is said about the result
 //! - `rate`: the clip at the document's frame rate
-//!
-//! Marks "in front" and "behind" give the depths of each frame.
 
 mod bodies;
 mod feet;
+mod depths;
 mod lines;
 mod loose;
 mod motion;
@@ -32,7 +32,6 @@ use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
 use crate::reshape::capture::Bindings;
-use crate::reshape::depth::{DepthError, Mark, infer};
 use crate::reshape::puppet::Options;
 use crate::scene::limbs::{Binding, LimbSet};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
@@ -45,8 +44,6 @@ pub use crate::reshape::facing::Side;
 pub use loose::Given;
 pub use rate::at_rate_of;
 
-/// Depths are written to a millionth.
-const DEPTH_SCALE: f64 = 1e6;
 /// Whether a clip is mirrored, left for right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mirror {
@@ -135,7 +132,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let motion = motion::of(&set, &bindings, parts, rest, (job, footage.first))?;
     let (mut bodies, loose) = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
-    let depths = depths(&set, parts, footage.first..=footage.last)?;
+    let depths = depths::of(&set, parts, &bodies, footage.first..=footage.last)?;
     progress.report(STEP, 0.05)?;
     let done = AtomicUsize::new(0);
     let moved = bodies.par_iter().map(|body| {
@@ -151,7 +148,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let placed = rebound(&set, &bindings, parts, rest);
     let loose: Vec<_> =
         loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
-    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths);
+    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
     document.set_limbs(&placed);
     Ok(report)
 }
@@ -215,37 +212,6 @@ fn footage(own: &Footage, job: &ReshapeJob) -> Footage {
     };
     footage.last = footage.first + frames - 1;
     footage
-}
-
-/// Depths by part and frame.
-fn depths(
-    set: &LimbSet,
-    parts: &[Part],
-    frames: std::ops::RangeInclusive<FrameNumber>,
-) -> Result<Vec<Vec<f64>>, PipelineError> {
-    let index = |name: &str| parts.iter().position(|part| part.name == name).unwrap_or(usize::MAX);
-    let mark = |m: &crate::scene::limbs::DepthMark| Mark {
-        front: index(&m.front),
-        behind: index(&m.behind),
-        first: m.first,
-        last: m.last,
-    };
-    let marks: Vec<Mark> = set.marks.iter().map(mark).collect();
-    let own: Vec<f64> = parts.iter().map(|part| part.depth).collect();
-    let named =
-        |k: &usize| format!("depth_marks[{k}] ({:?} in front of {:?})", set.marks[*k].front, set.marks[*k].behind);
-    let of = |frame| {
-        infer(&own, &marks, frame).map_err(|error| match error {
-            DepthError::Contradiction { frame, marks } => {
-                let list: Vec<String> = marks.iter().map(named).collect();
-                wrong(format!("frame {frame}: found marks that contradict each other: {}", list.join(", ")))
-            }
-            other => wrong(format!("depth_marks: {other}")),
-        })
-    };
-    let by_frame = frames.map(of).collect::<Result<Vec<_>, _>>()?;
-    let rounded = |d: f64| (d * DEPTH_SCALE).round() / DEPTH_SCALE;
-    Ok((0..parts.len()).map(|k| by_frame.iter().map(|all| rounded(all[k])).collect()).collect())
 }
 
 /// The limbs bound to the places of the contours that they have at rest: these keep their meaning on every frame.

@@ -9,7 +9,7 @@
 use super::Random;
 use anyhow::Result;
 use rototoon::geometry::Point;
-use rototoon::reshape::depth::{Mark, infer};
+use rototoon::reshape::depth::{Kin, Mark, infer};
 use serde::Serialize;
 
 /// Number of figures for each number of limbs.
@@ -108,7 +108,7 @@ fn ordered(limbs: usize, figures: &[Figure], share: Option<f64>, random: &mut Ra
         let marks = figure.marks(share, random);
         count += marks.len();
         for frame in 0..FRAMES {
-            let found = infer(&vec![0.0; limbs], &marks, frame)?;
+            let found = infer(&vec![0.0; limbs], &marks, &Kin::default(), frame)?;
             let truth = &figure.depths[(frame >= FRAMES / 2) as usize];
             let is = |&&(a, b): &&(usize, usize)| {
                 let (front, behind) = if truth[a] > truth[b] { (a, b) } else { (b, a) };
