@@ -66,7 +66,8 @@ class Captured:
     guessed: dict[str, int]
     """Key points that had to be filled in, with the number of frames on which no contour shows them."""
     doubts: list[str]
-    """What a person should know: contours that limbs hang on and that are lost or doubtful, with their frames."""
+    """What a person should know: contours that limbs hang on and that are lost or doubtful, with their frames, and keys that were changed
+    after tracking."""
 
 
 @dataclass(frozen=True)
@@ -119,7 +120,8 @@ class Reshaped:
     """The sides to which `drawing` and `clip` look, ``"left"`` or ``"right"``, each `None` where it cannot be told. `None` if they did not
     decide whether the clip was mirrored: the option said it, or it is a motion of the drawing itself."""
     notes: list[str]
-    """What a person should know beside: a clip of another frame rate, parts that go through the ground, strokes that lie on no part."""
+    """What a person should know beside: a clip of another frame rate, parts that go through the ground, strokes that lie on no part,
+    corrections that stay, guesses of the clip, parts that change places with others."""
     points: dict[str, list[list[list[float]]]]
     """Places of the points of the option `points`, by part and frame."""
 

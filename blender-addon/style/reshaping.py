@@ -55,6 +55,8 @@ def begin(ob, frame: int) -> Drawing:
         part["keys"] = {str(rest - offset): part["keys"][str(rest - offset)]}
         for name in ("pins", "centers", "tracks", "confidence", "curves", "wants_key"):
             part.pop(name, None)
+    # The drawing's key is the artist's, whatever an imported document says.
+    project.pop("reshaped", None)
     return Drawing(ob.session_uid, reading.document, project, rest)
 
 

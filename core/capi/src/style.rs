@@ -277,7 +277,7 @@ pub fn reshape(document: &str, clips: &str, json: &str, go_on: GoOn<'_>) -> Resu
         let frames = |frames: &Vec<Vec<Point>>| {
             json!(frames.iter().map(|f| f.iter().map(pair).collect()).collect::<Vec<Vec<_>>>())
         };
-        let notes = json!(rate.iter().chain(&made.notes).collect::<Vec<_>>());
+        let notes = json!(rate.iter().chain(&made.notes).chain(&made.remarks).collect::<Vec<_>>());
         let points: serde_json::Map<String, Value> =
             made.points.iter().map(|(part, f)| (part.clone(), frames(f))).collect();
         let points = Value::Object(points);

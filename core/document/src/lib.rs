@@ -16,6 +16,7 @@
 //! - [`fills`]: clicks of a painter, and the painted regions of every frame
 //! - [`recolours`]: colours of paint that become others from a drawing on
 //! - [`seen`]: which pictures results were made of
+//! - `reshaped`: which keys reshaping made
 //! - [`limbs`]: limbs on contours, swapped sides, which part is in front
 //! - [`skeleton`]: which body the limbs or clips are of
 //! - [`curves`]: files of curves to fit
@@ -71,6 +72,7 @@ pub mod place;
 mod plain_clips;
 pub mod problem;
 pub mod recolours;
+mod reshaped;
 pub mod save;
 pub mod schema;
 pub mod seen;

@@ -29,6 +29,7 @@ const OTHERS: [&str; 17] = [
     "recolours",
     "clips",
     "seen",
+    "reshaped",
 ];
 
 impl Document {

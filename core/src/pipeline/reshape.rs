@@ -11,13 +11,15 @@
 //! - `loose`: what parts and lines follow that no limb carries
 //! - `depths`: what is in front of what on each frame
 //! - `store`: the result in the document
+//! - `kept`: what the artist corrected on an earlier result
 //! - `sunk`: parts that go through the ground
 //! - `told`: what is said about the result
 //! - `rate`: the clip at the document's frame rate
 
 mod bodies;
-mod feet;
 mod depths;
+mod feet;
+mod kept;
 mod lines;
 mod loose;
 mod motion;
@@ -36,6 +38,7 @@ use crate::reshape::puppet::Options;
 use crate::scene::limbs::{Binding, LimbSet};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
 use bodies::{Body, Moved};
+use kept::Corrections;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -116,16 +119,20 @@ pub struct Reshaped {
     pub sides: Option<Sides>,
     /// What a person should know beside, in words: parts that go through the ground, strokes that lie on no part.
     pub notes: Vec<String>,
+    /// What a person may like to know, in words: what a shot's own motion had and this one has not.
+    pub remarks: Vec<String>,
     /// By part and frame where the points of [`ReshapeJob::points`] are.
     pub points: BTreeMap<String, Vec<Vec<Point>>>,
 }
 
 /// Reshapes a document's drawing: tracks, snapped paths and depths of its parts, and its strokes, on every frame of the
-/// clip. Runs on the caller's rayon pool; the result does not depend on it.
+/// clip. What the artist corrected on an earlier result stays. Runs on the caller's rayon pool; the result does not depend on it.
 pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progress) -> Result<Reshaped, PipelineError> {
     let set = document.limbs().map_err(wrong)?;
     let rest = rest_frame(&document.scene.parts, job.rest)?;
     let strokes = strokes_at(document, rest)?;
+    let mut corrections = Corrections::of(document, rest)?;
+    let outdated = corrections.outdated(document, rest);
     let footage = footage(&document.scene.footage, job);
     let parts = &document.scene.parts;
     let bindings = Bindings::new(&set, parts).map_err(wrong)?;
@@ -144,13 +151,29 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     // Of several errors the first part's is told, whichever was met first.
     let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
     let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
+    let mut report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
     let placed = rebound(&set, &bindings, parts, rest);
     let loose: Vec<_> =
         loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
     document.set_limbs(&placed);
+    correct(document, &mut corrections, &mut report);
+    report.notes.extend(outdated);
+    report.remarks.extend(depths.said);
     Ok(report)
+}
+
+/// Notes which keys were made, and puts the artist's corrections of an earlier result into the new one.
+fn correct(document: &mut Document, corrections: &mut Corrections, report: &mut Reshaped) {
+    let scene = &mut document.scene;
+    let made = scene.parts.iter().map(|part| (part.name.clone(), part.keys.clone())).collect();
+    let last = scene.footage.last;
+    scene.footage = corrections.lengthened(scene.footage.clone());
+    corrections.put(&mut scene.parts);
+    let (stay, left) = corrections.said(&scene.parts, last);
+    report.notes.extend(stay);
+    report.remarks.extend(left);
+    document.set_reshaped(&made);
 }
 
 /// Gives the bodies the points that are asked for.

@@ -136,6 +136,7 @@ fn report(made: &Reshaped, from: &Path) {
         say("warning", &format!("part {part:?}: no limb carries it, so {given}"));
     }
     made.notes.iter().for_each(|text| say("warning", text));
+    made.remarks.iter().for_each(|text| say("note", text));
     for chain in &made.still {
         say("warning", &format!("chain {chain:?}: no chain of the clip belongs to it, so it stays still (--chain)"));
     }

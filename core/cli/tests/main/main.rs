@@ -17,6 +17,7 @@ mod plates;
 mod season;
 mod seen;
 mod style;
+mod style_corrections;
 mod style_reshape;
 mod trace;
 mod tween;

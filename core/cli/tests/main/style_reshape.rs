@@ -4,16 +4,16 @@ use serde_json::{Value, json};
 use std::path::Path;
 use std::process::{Command, Output};
 
-fn rototoon(folder: &Path, arguments: &[&str]) -> Output {
+pub(super) fn rototoon(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_rototoon")).current_dir(folder).args(arguments).output().unwrap()
 }
 
-fn said(done: &Output) -> String {
+pub(super) fn said(done: &Output) -> String {
     String::from_utf8_lossy(&done.stderr).into_owned()
 }
 
 /// Eight points: four down the right side, then four up the left side. The frame's number moves them to the right.
-fn ring(x: f64, top: f64, bottom: f64, half: f64, frame: usize) -> Value {
+pub(super) fn ring(x: f64, top: f64, bottom: f64, half: f64, frame: usize) -> Value {
     let at = |k: usize| {
         let y =
             if k < 4 { top + (bottom - top) * k as f64 / 3.0 } else { bottom - (bottom - top) * (k - 4) as f64 / 3.0 };
@@ -22,7 +22,7 @@ fn ring(x: f64, top: f64, bottom: f64, half: f64, frame: usize) -> Value {
     json!((0..8).map(at).collect::<Vec<_>>())
 }
 
-fn figure(frames: usize) -> Value {
+pub(super) fn figure(frames: usize) -> Value {
     let part = |name: &str, depth: usize, x: f64, top: f64, bottom: f64, half: f64| {
         let keys: serde_json::Map<String, Value> =
             (0..frames).map(|f| (f.to_string(), ring(x, top, bottom, half, f))).collect();
@@ -44,11 +44,11 @@ fn figure(frames: usize) -> Value {
     })
 }
 
-fn write(folder: &Path, name: &str, value: &Value) {
+pub(super) fn write(folder: &Path, name: &str, value: &Value) {
     std::fs::write(folder.join(name), value.to_string()).unwrap();
 }
 
-fn read(folder: &Path, name: &str) -> Value {
+pub(super) fn read(folder: &Path, name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join(name)).unwrap()).unwrap()
 }
 

@@ -84,6 +84,7 @@ impl Document {
         moved.scene.footage = footage;
         // Results go with their drawings, and the pictures of these are other ones now.
         moved.forget_seen();
+        moved.forget_reshaped();
         moved.scene.parts = self.scene.parts.iter().map(|part| part::moved(part, conform, &mut notes)).collect();
         drawn::moved(&mut moved, conform, &mut notes)?;
         Ok((moved, notes))

@@ -84,7 +84,7 @@ fn drawn(strokes: &[DrawnStroke], lines: &Lines, frames: &[FrameNumber]) -> Vec<
     frames.iter().enumerate().map(on).collect()
 }
 
-/// Sets tracks with keys on both ends, and removes corrections to earlier tracks.
+/// Sets tracks with keys on both ends, and removes corrections to earlier tracks. Those that stay come back afterwards ([`super::kept`]).
 fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
     let ends = [tracks.first_key_value(), tracks.last_key_value()];
     part.keys = ends.into_iter().flatten().map(|(frame, points)| (*frame, points.clone())).collect();

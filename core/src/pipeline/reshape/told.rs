@@ -36,6 +36,7 @@ pub(super) fn report(
         mirrored: motion.mirrored,
         sides: motion.sides,
         notes,
+        remarks: Vec::new(),
         points: points.collect(),
     }
 }
