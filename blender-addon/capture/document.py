@@ -83,6 +83,16 @@ def need_pictures(ob, reading: Reading) -> None:
         raise Problem(f"The footage has no picture for the contours {where}: delete or move them; it has frames {first} to {last}")
 
 
+def reach(project: dict[str, Any]) -> list[int]:
+    """Lets the footage of a document go on to its last contour, if it is one picture: a drawing on it that was reshaped moves on before that
+    picture, which is held. Returns the frames of contours that longer footage does not reach; those are in no picture and no shape."""
+    shot = project["footage"]
+    numbers = {int(label) for part in project["parts"] for label in part.get("tracks", ())}
+    if numbers and shot["first"] == shot["last"] < max(numbers):
+        shot["last"], shot["gaps"] = max(numbers), footage.HELD
+    return sorted(number for number in numbers if not shot["first"] <= number <= shot["last"])
+
+
 def _need_places(found: contours.Contours) -> None:
     """Raises a `Problem` if a point of a line is no number."""
     for (layer, frame), drawing in found.drawings.items():

@@ -247,6 +247,25 @@ def test_a_clip_of_the_same_name_is_only_replaced_on_request(addon, tmp_path):
     assert not bpy.context.window_manager.operator_properties_last("rototoon.save_clip").replace, "it is asked for each time"
 
 
+def test_a_reshaped_drawing_on_one_picture_is_exported_with_all_its_frames(addon, tmp_path):
+    shelf = str(tmp_path / "clips")
+    performer(addon, tmp_path)
+    bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf)
+    picked = shots.draw_sequence(tmp_path / "doll", count=1)
+    bpy.ops.rototoon.setup(filepath=str(picked))
+    bpy.context.view_layer.update()
+    ob = bpy.context.object
+    shots.draw(addon, ob, 1, figure())
+    shots.limb_lines(addon, ob, figure(), LINES)
+    assert bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk", folder=shelf) == {"FINISHED"}
+    path = tmp_path / "doll.json"
+    assert bpy.ops.rototoon.export_document(filepath=str(path)) == {"FINISHED"}
+    written = json.loads(path.read_text())
+    last = max(int(frame) for frame in written["parts"][0]["tracks"])
+    assert last > 1 and written["footage"]["last"] == last and written["footage"]["gaps"] == "held"
+    assert ob.rototoon.last == 1, "the footage of the object is what it was"
+
+
 def test_reshaping_again_leaves_corrected_contours(addon, tmp_path):
     shelf, scripting = str(tmp_path / "clips"), addon("scripting")
     for motion, swing in (("walk", 0.6), ("wave", 1.0)):

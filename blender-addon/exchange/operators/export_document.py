@@ -63,9 +63,12 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
             raise Problem(why)
         reading = document.read(context.object, results=True, needed=False)
         document.need_pictures(context.object, reading)
+        beyond = document.reach(reading.document)
         lines = self._add_lines(context.object, reading.document)
         paint = self._add_paint(context.object, reading.document)
         files.save(path, reading.document)
+        if beyond:
+            self.warn(f"the footage has no picture for the contours of its pictures {listed(beyond)}: they are written, but render and export end with the footage")
         reshaped = snapping.reshaped(context.object)
         if reshaped:
             self.warn(f"left out: snapped lines that were fitted or cut since, on {listed(reshaped)}; Snap to Ink makes them again")

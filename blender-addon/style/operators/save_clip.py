@@ -34,6 +34,7 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
         folder = folder_of(ob, self.folder)
         limbs.needed(ob)
         project = document.read(ob, results=True).document
+        document.reach(project)
         character, offset = self.character or ob.name, ob.rototoon.frame_offset
         frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
         made = capture_clip(project, character, self.motion, *frames)

@@ -118,6 +118,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let whole = document.scene.footage.clone();
     // Before frames are left out or get other numbers.
     let changed = changed(given, &document)?;
+    let outside = outside(&document, &asked);
     let mut document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
         let chosen =
@@ -144,9 +145,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     write_whole(to, text.as_bytes())?;
     let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
     let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
-    let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
+    let warnings = [outside, left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
     warn(to, warnings.iter().flatten().chain(&changed));
     Ok(())
+}
+
+/// What is told of contours that no frame of the footage has. Whoever asks for frames knows that others are left out.
+fn outside(document: &Document, asked: &Excerpt) -> Option<String> {
+    asked.frames.is_none().then(|| pipeline::outside(&document.scene)).flatten()
 }
 
 /// What is told of pictures that are others than when they were looked at.
@@ -191,7 +197,8 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern, inp
     };
     (complete.scene.footage.first..=complete.scene.footage.last).try_for_each(written)?;
     let (left_out, scene) = (pipeline::left_out_of_shapes(&complete, "svg"), &complete.scene);
-    let warnings = [left_out, pipeline::untracked(scene), pipeline::outdated(scene)];
+    let outside = outside(document, &asked);
+    let warnings = [outside, left_out, pipeline::untracked(scene), pipeline::outdated(scene)];
     warn(to, warnings.iter().flatten().chain(&changed(given, document)?));
     Ok(())
 }

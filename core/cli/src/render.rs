@@ -99,6 +99,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
     let outdated = pipeline::outdated(&document.scene);
     let empty = pipeline::empty(&document, &job);
+    let contours = !drawn && job.frames.is_none();
+    let outside = contours.then(|| pipeline::outside(&document.scene)).flatten();
     let made: Vec<Made> = [
         (job.picture.shows_regions(), Made::Filled),
         (job.picture.shows_strokes(), Made::Traced),
@@ -112,6 +114,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         .iter()
         .chain(&outdated)
         .chain(&empty)
+        .chain(&outside)
         .chain(&changed)
         .for_each(|warning| line("warning", &format!("{output}: {warning}")));
     Ok(())

@@ -1,7 +1,7 @@
 //! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
 use super::tween::{peg_of, spacing};
-use super::{PipelineError, changed, gaps};
+use super::{PipelineError, changed, gaps, outside};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::seen::Made;
@@ -35,6 +35,9 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
                 "the key was changed after tracking, and the old contour is used: run `rototoon track`",
             );
         }
+    }
+    if let Some(outside) = outside(&document.scene) {
+        problems.warning("footage", outside);
     }
     shape(&document.scene.footage, &mut problems);
     let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;

@@ -87,7 +87,8 @@ pub struct ReshapeJob<'a> {
     pub fps: f64,
     /// The frame on which the drawing is at rest; none for the first on which every part has a contour.
     pub rest: Option<FrameNumber>,
-    /// The footage that the result lies over; none for the drawing's own, with as many frames as the clip has.
+    /// The footage that the result lies over; none for the drawing's own, with as many frames as the clip has. One picture is held
+    /// on all of them.
     pub over: Option<Footage>,
     /// Chains of the clip's skeleton and of the drawing's that belong together though their names differ. A clip of another
     /// skeleton is retargeted ([`crate::reshape::retarget`]).
@@ -233,6 +234,8 @@ fn footage(own: &Footage, job: &ReshapeJob) -> Footage {
         Some(over) => over.clone(),
         None => Footage { fps: job.fps, ..own.clone() },
     };
+    // A drawing on one picture moves before that picture, which is not there for each frame.
+    footage.held |= footage.first == footage.last && frames > 1;
     footage.last = footage.first + frames - 1;
     footage
 }

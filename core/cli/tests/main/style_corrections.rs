@@ -115,3 +115,31 @@ fn keys_of_a_shot_are_not_put_into_another_motion_and_that_is_said() {
     assert!(other["parts"][1].get("pins").is_none_or(|pins| pins == &json!({})), "{}", other["parts"][1]);
     assert!(!told.contains("your corrections"), "{told}");
 }
+
+#[test]
+fn a_drawing_on_one_picture_moves_before_that_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let made = reshaped(folder);
+    assert_eq!((&made["footage"]["last"], &made["footage"]["gaps"]), (&json!(8), &json!("held")));
+    // Another program's document ends before its contours.
+    let mut short = made;
+    short["footage"]["last"] = json!(0);
+    for part in short["parts"].as_array_mut().unwrap() {
+        part["keys"] = json!({"0": part["keys"]["0"]});
+    }
+    write(folder, "short.json", &short);
+    let wanted = "contours on frames 1-8 are outside of the footage, frames 0 to 0, so no picture and no shape has them: \"body\", \"arm\"";
+    for arguments in [
+        &["check", "short.json"][..],
+        &["export", "short.json", "-o", "s.svg"],
+        &["export", "short.json", "-o", "s_%d.svg"],
+        &["export", "short.json", "-o", "s.nk"],
+        &["render", "short.json", "-o", "s_%d.png", "--what", "matte"],
+    ] {
+        let told = said(&rototoon(folder, arguments));
+        assert!(told.contains(wanted), "{arguments:?}: {told}");
+    }
+    let told = said(&rototoon(folder, &["export", "short.json", "--frames", "0-0", "-o", "s.svg"]));
+    assert!(!told.contains("outside of the footage"), "{told}");
+}
