@@ -55,7 +55,8 @@ pub fn capture(document: &str, json: &str) -> Result<String, Failure> {
     let guessed: serde_json::Map<String, Value> =
         made.guessed.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
     let guessed = Value::Object(guessed);
-    let (clips, first, doubts) = (made.clips.text(), made.first, json!(made.doubts));
+    let (clips, first, doubts) =
+        (made.clips.text(), made.first, json!(made.doubts.iter().chain(&made.outdated).collect::<Vec<_>>()));
     let clips = clips.trim_end();
     Ok(format!(r#"{{"clips": {clips}, "first": {first}, "guessed": {guessed}, "doubts": {doubts}}}"#))
 }

@@ -1,7 +1,7 @@
 //! From contours to a skeleton clip, and translation of a motion into another character's manner.
 
 use super::report::runs;
-use super::{PipelineError, frames_of};
+use super::{PipelineError, frames_of, outdated};
 use crate::project::Document;
 use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
@@ -34,6 +34,8 @@ pub struct CapturedClip {
     pub guessed: Vec<(String, usize)>,
     /// In words, which contours that limbs hang on are lost or doubtful, and on which frames of the clip.
     pub doubts: Vec<String>,
+    /// In words, which keys were changed after tracking, so that the clip has old contours there.
+    pub outdated: Option<String>,
 }
 
 /// Captures a clip from a document's tracked contours and its limbs.
@@ -58,7 +60,8 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
     let last = captured.first + captured.postures.len() as FrameNumber - 1;
     let doubts = doubts(&set, &document.scene.parts, captured.first..=last);
     let clip = Clip::of(set.template.clone(), job.character.as_str(), job.motion.as_str(), captured.postures);
-    Ok(CapturedClip { clips: Clips { clips: vec![clip], fps: footage.fps }, first: captured.first, guessed, doubts })
+    let clips = Clips { clips: vec![clip], fps: footage.fps };
+    Ok(CapturedClip { clips, first: captured.first, guessed, doubts, outdated: outdated(&document.scene) })
 }
 
 /// Says of each part that limbs hang on where its contours are lost or doubtful.

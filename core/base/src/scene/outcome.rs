@@ -2,8 +2,9 @@
 //!
 //! The confidence of a point is the probability that it is in its place, so the mean over the points of a contour is the
 //! share of its points that are expected to be. A contour is *sure* if that share is at least [`SURE`], *lost* if it is
-//! below [`LOST`], and *doubtful* between them. Keys are the artist's, and beyond doubt. A part with one key is lost on
-//! the frames beyond its track where it needs a key.
+//! below [`LOST`], and *doubtful* between them. Keys are the artist's, and beyond doubt. A key that was changed after tracking
+//! is another contour than the track there, which all later stages use: that frame is lost until the part is tracked again. A
+//! part with one key is lost on the frames beyond its track where it needs a key.
 //!
 //! Everything that speaks of lost parts uses these bounds: the command line, the reports and the Blender add-on.
 
@@ -33,7 +34,7 @@ pub struct Outcome {
     pub sure: Vec<FrameNumber>,
     /// Frames of doubtful contours.
     pub doubtful: Vec<FrameNumber>,
-    /// Frames of lost contours, and those beyond a track where the part needs a key.
+    /// Frames of lost contours, those of keys that were changed after tracking, and those beyond a track where the part needs a key.
     pub lost: Vec<FrameNumber>,
 }
 
@@ -65,6 +66,7 @@ impl Outcome {
             outcome.of_verdict(Verdict::of(confidence)).push(frame);
         }
         outcome.lost.extend(part.wants_key.iter().filter(|frame| !part.confidence.contains_key(frame)));
+        outcome.lost.extend(part.outdated());
         outcome.lost.sort_unstable();
         outcome
     }
@@ -104,6 +106,11 @@ mod tests {
         let expected = Outcome { sure: vec![1], doubtful: vec![2], lost: vec![-1, 3, 4, 5] };
         assert_eq!(Outcome::of(&part), expected, "the key on frame 0 is beyond doubt");
         assert_eq!(Outcome::of(&Part::default()), Outcome::default());
+        part.tracks.insert(0, vec![Point::ZERO; 2]);
+        assert_eq!(Outcome::of(&part), expected);
+        part.tracks.insert(0, vec![Point::X; 2]);
+        let stale = Outcome { lost: vec![-1, 0, 3, 4, 5], ..expected };
+        assert_eq!(Outcome::of(&part), stale, "the key on frame 0 was changed after tracking");
         use Verdict::{Doubtful, Lost, Sure};
         let on = [0, 1, 2, 3, 4, 5].map(|frame| Verdict::on(&part, frame));
         assert_eq!(on, [None, Some(Sure), Some(Doubtful), Some(Lost), Some(Lost), None]);

@@ -44,6 +44,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     for (point, count) in &made.guessed {
         line("warning", &format!("{}: {point}: filled in on {count} of {frames} frames", from.display()));
     }
+    if let Some(outdated) = &made.outdated {
+        line("warning", &format!("{}: {outdated}", from.display()));
+    }
     for doubt in &made.doubts {
         line("warning", &format!("{}: {doubt}; the clip has what the contours show there", from.display()));
     }

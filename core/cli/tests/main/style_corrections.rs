@@ -117,6 +117,29 @@ fn keys_of_a_shot_are_not_put_into_another_motion_and_that_is_said() {
 }
 
 #[test]
+fn keys_that_were_changed_after_tracking_are_named_and_their_frames_stay_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let mut shot = figure(6);
+    let contours = shot["parts"][1]["keys"].take();
+    let confidence: serde_json::Map<String, Value> =
+        (1..5).map(|frame| (frame.to_string(), json!(vec![if frame < 4 { 0.2 } else { 0.95 }; 8]))).collect();
+    shot["parts"][1]["keys"] = json!({"0": contours["0"], "5": contours["5"]});
+    shot["parts"][1]["tracks"] = contours;
+    shot["parts"][1]["confidence"] = json!(confidence);
+    shot["parts"][1]["keys"]["2"] = ring(90.0, 20.0, 50.0, 6.0, 0);
+    write(folder, "shot.json", &shot);
+    let old = "warning: shot.json: keys were changed after tracking, and the old contours are used: \"arm\"; run `rototoon track` first";
+    let clip = ["style", "clip", "shot.json", "--character", "a", "--motion", "b", "-o", "clips.json"];
+    let told = said(&rototoon(folder, &clip));
+    assert!(told.contains(old), "{told}");
+    assert!(told.contains("part \"arm\" (r_shoulder to r_wrist): lost on 1-3;"), "{told}");
+    let reshape = ["style", "reshape", "shot.json", "clips.json", "-o", "out.json"];
+    let told = said(&rototoon(folder, &reshape));
+    assert!(told.contains(old), "{told}");
+}
+
+#[test]
 fn a_drawing_on_one_picture_moves_before_that_picture() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
