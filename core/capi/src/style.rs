@@ -215,11 +215,9 @@ pub fn translate(clips: &str, json: &str, go_on: GoOn<'_>) -> Result<String, Fai
     run(given.threads, go_on, |progress| {
         let (made, grounds) = pipeline::translate_and_judge(&clips, &request, &how, progress).map_err(failed)?;
         let text = made.text();
-        Ok(if given.notes {
-            format!(r#"{{"clips": {}, "notes": {}}}"#, text.trim_end(), json!(grounds.notes()))
-        } else {
-            text
-        })
+        let guessed = made.clips.iter().filter_map(pipeline::guessed_translation);
+        let notes: Vec<String> = grounds.notes().into_iter().chain(guessed).collect();
+        Ok(if given.notes { format!(r#"{{"clips": {}, "notes": {}}}"#, text.trim_end(), json!(notes)) } else { text })
     })
 }
 

@@ -9,7 +9,8 @@
 //! their file has version 2. `keypoints` names the key points of the file's body.
 //!
 //! x right, y down, in any one unit a character. A translated clip also holds `deviation`: for each frame and key point
-//! the standard deviation of its place, in the same unit. Fields that are not known are left out of what is written anew.
+//! the standard deviation of its place, in the same unit. A captured clip holds `guessed`: by key point the first and the last
+//! frame of each time on which it was filled in. Fields that are not known are left out of what is written anew.
 
 use super::fields::FieldError;
 use super::output::{WriteError, write_whole};
@@ -18,6 +19,7 @@ use super::schema::{MAX_FPS, MIN_FPS};
 use super::skeleton;
 use rototoon_base::file;
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::clip::Guessed;
 use rototoon_base::scene::skeleton::Posture;
 use rototoon_base::scene::{Clip, Template};
 use serde_json::Value;
@@ -254,7 +256,34 @@ impl Reader<'_> {
             .enumerate()
             .map(|(frame, posture)| self.posture(&template, posture, &format!("{place}, frame {frame}")))
             .collect::<Result<_, _>>()?;
-        Ok(Clip::of(template, character, motion, postures))
+        let guessed = self.guessed(&template, value, (&place, frames.len()))?;
+        Ok(Clip { guessed, ..Clip::of(template, character, motion, postures) })
+    }
+
+    /// The times on which key points of a clip were filled in.
+    fn guessed(
+        &self,
+        template: &Template,
+        clip: &Value,
+        (place, frames): (&str, usize),
+    ) -> Result<Guessed, ClipsError> {
+        let place = format!("{place}.guessed");
+        let fields = match clip.get("guessed") {
+            None => return Ok(Guessed::new()),
+            Some(Value::Object(fields)) => fields,
+            Some(other) => return Err(self.wrong(place, other, "an object with times by key point")),
+        };
+        let names = template.names();
+        let read = |(name, value): (&String, &Value)| {
+            let point = names.iter().position(|known| known == name);
+            let point =
+                point.ok_or_else(|| self.field(&place, format!("{name:?}"), format!("one of {}", names.join(", "))))?;
+            let times: Option<Vec<[usize; 2]>> = serde_json::from_value(value.clone()).ok();
+            let times = times.filter(|times| rises(times, frames));
+            let expected = format!("times [first, last] that rise, of frames 0 to {}", frames - 1);
+            Ok((point, times.ok_or_else(|| self.field(format!("{place}.{name}"), value.to_string(), expected))?))
+        };
+        fields.iter().map(read).collect()
     }
 
     /// A human posture.
@@ -282,6 +311,14 @@ impl Reader<'_> {
         }
         Ok(posture)
     }
+}
+
+/// Whether times are those of a clip with a number of frames: each has its ends in order, and they rise.
+pub(super) fn rises(times: &[[usize; 2]], frames: usize) -> bool {
+    let ends: Vec<usize> = times.iter().flatten().copied().collect();
+    let ordered =
+        times.iter().all(|[first, last]| first <= last) && times.windows(2).all(|pair| pair[0][1] < pair[1][0]);
+    ordered && ends.last().is_none_or(|last| *last < frames)
 }
 
 fn kind(value: &Value) -> String {
@@ -325,6 +362,28 @@ mod tests {
         assert_eq!(clips.fps, 12.0);
         assert_eq!(clips.clips[0].postures, vec![vec![Point::new(1.5, -2.0); COUNT]]);
         assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+    }
+
+    #[test]
+    fn guesses_are_read_again_and_wrong_ones_are_named() {
+        let with = |guessed: &str| {
+            file(&format!("[{}, {}]", posture(), posture()))
+                .replace("\"points\"", &format!("\"guessed\": {guessed}, \"points\""))
+        };
+        let clips = Clips::parse(&with(r#"{"l_wrist": [[0, 0], [1, 1]], "chest": [[0, 1]]}"#), "f").unwrap();
+        assert_eq!(clips.clips[0].guessed, Guessed::from([(1, vec![[0, 1]]), (7, vec![[0, 0], [1, 1]])]));
+        assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+        let place = r#"f.json: clips[0] ("a", "walk").guessed"#;
+        assert!(
+            error(&with(r#"{"wing": []}"#))
+                .starts_with(&format!("{place}: found \"wing\", expected one of pelvis, chest"))
+        );
+        let times = "expected times [first, last] that rise, of frames 0 to 1";
+        for wrong in ["[[0, 2]]", "[[1, 0]]", "[[0, 1], [1, 1]]", "7"] {
+            let told = error(&with(&format!(r#"{{"head": {wrong}}}"#)));
+            assert!(told.starts_with(&format!("{place}.head: found ")) && told.ends_with(times), "{told}");
+        }
+        assert_eq!(error(&with("7")), format!("{place}: found 7, expected an object with times by key point"));
     }
 
     #[test]

@@ -11,7 +11,7 @@ use rototoon_base::scene::{Clip, Template};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::Value;
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Latest version of the form. Version 2 has other bodies than the human one.
 pub(super) const VERSION: u64 = 2;
@@ -36,6 +36,21 @@ struct Moves<'a> {
     #[serde(borrow)]
     motion: Cow<'a, str>,
     points: Vec<Posture>,
+    #[serde(borrow, default)]
+    guessed: BTreeMap<Cow<'a, str>, Vec<[usize; 2]>>,
+}
+
+impl Moves<'_> {
+    /// The clip; none if what is guessed names no key point or no frame.
+    fn clip(self) -> Option<Clip> {
+        let frames = self.points.len();
+        let guess = |(name, times): (Cow<'_, str>, Vec<[usize; 2]>)| {
+            let point = NAMES.iter().position(|known| *known == name)?;
+            super::clips::rises(&times, frames).then_some((point, times))
+        };
+        let guessed = self.guessed.into_iter().map(guess).collect::<Option<_>>()?;
+        Some(Clip { guessed, ..Clip::new(self.character, self.motion, self.points) })
+    }
 }
 
 /// Frames per second of a file without `fps`.
@@ -62,7 +77,7 @@ pub(super) fn read(text: &str) -> Option<(Vec<Clip>, f64)> {
     if !(1..=VERSION).contains(&file.rototoon_clips) || !(MIN_FPS..=MAX_FPS).contains(&file.fps) || !named || !whole {
         return None;
     }
-    let clips = file.clips.into_iter().map(|clip| Clip::new(clip.character, clip.motion, clip.points)).collect();
+    let clips = file.clips.into_iter().map(Moves::clip).collect::<Option<_>>()?;
     Some((clips, file.fps))
 }
 
@@ -86,6 +101,8 @@ struct WrittenClip<'a> {
     points: Vec<Vec<[Rounded; 2]>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     deviation: Vec<Vec<Rounded>>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    guessed: BTreeMap<&'a str, &'a [[usize; 2]]>,
 }
 
 /// Numbers are written with six decimals, far below what is visible, in torso lengths as well as in pixels.
@@ -114,7 +131,8 @@ pub(super) fn written(clips: &[Clip], fps: f64) -> String {
     };
     let list = clips.iter().map(|c| {
         let (points, deviation) = clip(c);
-        WrittenClip { character: &c.character, motion: &c.motion, skeleton: own(c), points, deviation }
+        let guessed = c.guessed.iter().map(|(point, times)| (c.template.point_name(*point), &times[..])).collect();
+        WrittenClip { character: &c.character, motion: &c.motion, skeleton: own(c), points, deviation, guessed }
     });
     let human = clips.iter().all(|clip| clip.template.is_human());
     let file = Written {

@@ -11,12 +11,13 @@
 //! 4. Otherwise the template's typical posture serves, in the size of the torso. Legs and limbs hang as they do there;
 //!    what else hangs on the torso turns with it.
 //!
-//! [`Captured::guessed`] counts the filled-in key points. On frames where the contours show the other side
+//! [`Captured::guessed`] counts the filled-in key points, and [`Captured::times`] says on which frames. On frames where the contours show the other side
 //! ([`LimbSet::swaps`]) left and right are exchanged before anything is filled in.
 //!
 //! Coordinates are those of the tracked contours: pixels, x right, y down.
 
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::clip::{Guessed, times};
 use rototoon_base::scene::limbs::{BindingError, Bound, LimbSet};
 use rototoon_base::scene::template::length;
 use rototoon_base::scene::{FrameNumber, Part, Template};
@@ -34,6 +35,8 @@ pub struct Captured {
     pub postures: Vec<Vec<Point>>,
     /// For each key point the number of frames on which it was filled in.
     pub guessed: Vec<usize>,
+    /// The frames of the clip on which key points were filled in.
+    pub times: Guessed,
 }
 
 /// Why a capture failed.
@@ -180,7 +183,9 @@ pub fn capture(set: &LimbSet, parts: &[Part], frames: RangeInclusive<FrameNumber
     }
     let seen: Vec<Seen> = all.iter().map(|(_, seen)| seen.clone()).collect();
     let guessed = (0..template.len()).map(|k| seen.iter().filter(|frame| frame[k].is_none()).count()).collect();
-    Ok(Captured { first: all[0].0, postures: filled(template, &seen), guessed })
+    let missing = |k: usize| seen.iter().map(|frame| frame[k].is_none()).collect::<Vec<_>>();
+    let times = (0..template.len()).map(|k| (k, times(&missing(k)))).filter(|(_, times)| !times.is_empty()).collect();
+    Ok(Captured { first: all[0].0, postures: filled(template, &seen), guessed, times })
 }
 
 /// Fills in missing points of the torso: its ends from the legs and limbs that hang on them, what is between from the
@@ -339,6 +344,8 @@ mod tests {
         let (set, parts) = figure();
         let clip = capture(&set, &parts, 0..=4).unwrap();
         assert_eq!(clip.guessed[9], 1);
+        assert_eq!((&clip.times[&9][..], &clip.times[&6][..]), (&[[2, 2]][..], &[[0, 4]][..]));
+        assert!(!clip.times.contains_key(&15), "the knee is told on all frames");
         assert!(clip.postures[2][9].distance(Point::new(8.0, 0.0)) < 1e-12, "the arm's part is not there on frame 2");
         // The other arm copies this one, and so does the other leg.
         assert!(clip.postures[1][6].distance(clip.postures[1][9]) < 1e-12);

@@ -29,7 +29,7 @@ mod store;
 mod sunk;
 mod told;
 
-use super::PipelineError;
+use super::{PipelineError, guesses};
 use crate::geometry::Point;
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
@@ -159,7 +159,9 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
     document.set_limbs(&placed);
     correct(document, &mut corrections, &mut report);
+    let same = job.clip.template.same_points(&set.template) && job.chains.is_empty();
     report.notes.extend(outdated);
+    report.notes.extend(guesses::followed(job.clip, (&set, &document.scene.parts), report.mirrored, same));
     report.remarks.extend(depths.said);
     Ok(report)
 }

@@ -1,7 +1,7 @@
 //! From contours to a skeleton clip, and translation of a motion into another character's manner.
 
 use super::report::runs;
-use super::{PipelineError, frames_of, outdated};
+use super::{PipelineError, frames_of, guesses, outdated};
 use crate::project::Document;
 use crate::project::clips::Clips;
 use crate::reshape::capture::capture;
@@ -59,7 +59,8 @@ pub fn clip(document: &Document, job: &ClipJob) -> Result<CapturedClip, Pipeline
     let guessed = counts.map(|(k, count)| (set.template.point_name(k).to_owned(), *count)).collect();
     let last = captured.first + captured.postures.len() as FrameNumber - 1;
     let doubts = doubts(&set, &document.scene.parts, captured.first..=last);
-    let clip = Clip::of(set.template.clone(), job.character.as_str(), job.motion.as_str(), captured.postures);
+    let mut clip = Clip::of(set.template.clone(), job.character.as_str(), job.motion.as_str(), captured.postures);
+    clip.guessed = captured.times;
     let clips = Clips { clips: vec![clip], fps: footage.fps };
     Ok(CapturedClip { clips, first: captured.first, guessed, doubts, outdated: outdated(&document.scene) })
 }
@@ -111,7 +112,8 @@ pub fn translate_and_judge(
     progress: &dyn Progress,
 ) -> Result<(Clips, Grounds), PipelineError> {
     let made = style::translate_and_judge(&clips.clips, request, options, progress);
-    let (made, grounds) = made.map_err(failed)?;
+    let (mut made, grounds) = made.map_err(failed)?;
+    guesses::mark(&clips.clips, request, options, &mut made);
     Ok((Clips { clips: vec![made], fps: clips.fps }, grounds))
 }
 

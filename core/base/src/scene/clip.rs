@@ -7,6 +7,7 @@
 use super::skeleton::Posture;
 use super::template::Template;
 use crate::geometry::Point;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Share by which frame rates may differ and count as equal: 24 and 23.976, or a rate from a rounded time of a frame.
@@ -29,6 +30,19 @@ pub struct Clip {
     /// Standard deviation of the coordinates of each key point in each frame, in the unit of the points. Empty if
     /// unknown.
     pub deviation: Vec<Vec<f64>>,
+    /// By key point the first and the last frame of each time, from 0 and rising, on which nothing told its place, so that it
+    /// was filled in.
+    pub guessed: Guessed,
+}
+
+/// Times in frames by key point.
+pub type Guessed = BTreeMap<usize, Vec<[usize; 2]>>;
+
+/// Frames as times: each run of `true` is one.
+pub fn times(frames: &[bool]) -> Vec<[usize; 2]> {
+    let on: Vec<usize> = (0..frames.len()).filter(|&frame| frames[frame]).collect();
+    let runs = on.chunk_by(|a, b| *b == a + 1);
+    runs.filter_map(|run| Some([*run.first()?, *run.last()?])).collect()
 }
 
 impl Clip {
@@ -45,7 +59,21 @@ impl Clip {
         motion: impl Into<String>,
         postures: Vec<Vec<Point>>,
     ) -> Self {
-        Self { character: character.into(), motion: motion.into(), template, postures, deviation: Vec::new() }
+        let (character, motion) = (character.into(), motion.into());
+        Self { character, motion, template, postures, deviation: Vec::new(), guessed: Guessed::new() }
+    }
+
+    /// Whether a key point's place was filled in on a frame.
+    pub fn is_guessed(&self, point: usize, frame: usize) -> bool {
+        self.guessed
+            .get(&point)
+            .is_some_and(|times| times.iter().any(|[first, last]| (*first..=*last).contains(&frame)))
+    }
+
+    /// The key points that were filled in, each with the number of frames.
+    pub fn guesses(&self) -> Vec<(usize, usize)> {
+        let count = |times: &Vec<[usize; 2]>| times.iter().map(|[first, last]| last - first + 1).sum();
+        self.guessed.iter().map(|(point, times)| (*point, count(times))).collect()
     }
 
     /// The postures of a human clip; none if the body is another.
@@ -78,7 +106,14 @@ impl Clip {
         let postures = times.iter().map(|time| posture(at(*time))).collect();
         let complete = self.deviation.len() == self.postures.len();
         let deviation = if complete { times.iter().map(|time| spread(at(*time))).collect() } else { Vec::new() };
-        Self { postures, deviation, ..self }
+        // A posture between two frames is a guess if one of them is.
+        let guess = |point: usize| {
+            let on = |time: &f64| self.is_guessed(point, at(*time).0) || self.is_guessed(point, at(*time).1);
+            super::clip::times(&times.iter().map(on).collect::<Vec<_>>())
+        };
+        let guessed = self.guessed.keys().map(|&point| (point, guess(point)));
+        let guessed = guessed.filter(|(_, times)| !times.is_empty()).collect();
+        Self { postures, deviation, guessed, ..self }
     }
 }
 
@@ -126,6 +161,11 @@ mod tests {
         let half = clip.clone().at_rate(24.0, 12.0);
         assert_eq!(half.human().unwrap(), [at(0.0), at(2.0), at(4.0)]);
         assert_eq!(half.deviation[1], [2.0; 3]);
+        clip.guessed = Guessed::from([(7, vec![[0, 1], [4, 4]])]);
+        assert_eq!(clip.clone().at_rate(24.0, 12.0).guessed, Guessed::from([(7, vec![[0, 0], [2, 2]])]));
+        assert_eq!(clip.clone().at_rate(24.0, 48.0).guessed, Guessed::from([(7, vec![[0, 3], [7, 8]])]));
+        assert_eq!(clip.guesses(), [(7, 3)]);
+        clip.guessed.clear();
         let twice = clip.clone().at_rate(24.0, 48.0);
         assert_eq!((twice.postures.len(), twice.human().unwrap()[3]), (9, at(1.5)));
         // The rest of a frame at the end is left out: nothing is known after the last one.

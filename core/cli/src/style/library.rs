@@ -3,6 +3,7 @@
 use crate::arguments;
 use crate::failure::{Failure, line};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use rototoon::pipeline;
 use rototoon::project::clips::Clips;
 use rototoon::project::library::{AddError, Addition, Existing, Library};
 use std::io::Write;
@@ -66,7 +67,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (found, troubles) = library.checked(asked);
     troubles.iter().for_each(|trouble| line("warning", &trouble.to_string()));
     let mut out = std::io::stdout().lock();
-    for e in found {
+    for (e, clip) in found {
+        if let Some(guesses) = pipeline::guesses(&clip) {
+            let file = folder.join(&e.file);
+            line("note", &format!("{}: guessed, not captured: {guesses}", file.display()));
+        }
         // A closed standard output, such as of `head`, is no error.
         let fields = format!("{}\t{}\t{}\t{}\t{}\t{}", e.character, e.motion, e.frames, e.fps, e.file, e.source);
         if writeln!(out, "{fields}").is_err() {

@@ -118,5 +118,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     for note in grounds.notes() {
         line("note", &format!("{}: {note}", from.display()));
     }
+    for note in made.clips.iter().filter_map(pipeline::guessed_translation) {
+        line("warning", &format!("{}: {note}", from.display()));
+    }
     Ok(made.save(to)?)
 }

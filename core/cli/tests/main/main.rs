@@ -18,6 +18,7 @@ mod season;
 mod seen;
 mod style;
 mod style_corrections;
+mod style_guesses;
 mod style_reshape;
 mod trace;
 mod tween;

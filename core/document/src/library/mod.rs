@@ -106,16 +106,17 @@ impl Library {
         self.read_all(entries, |clip, own| clip.at_rate(own, fps))
     }
 
-    /// Some entries as their files are, without those whose files cannot be used. These are reported.
-    pub fn checked<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Entry>, Vec<Trouble>) {
+    /// Some entries as their files are, with their clips, without those whose files cannot be used. These are reported.
+    pub fn checked<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<(Entry, Clip)>, Vec<Trouble>) {
         let (mut good, mut troubles) = (Vec::new(), Vec::new());
         let entries: Vec<&Entry> = entries.collect();
         let read: Vec<_> = entries.par_iter().map(|entry| one_clip(&self.folder.join(&entry.file))).collect();
         for (entry, result) in entries.into_iter().zip(read) {
             match result {
                 Ok((clip, fps)) => {
-                    let (frames, Clip { character, motion, .. }) = (clip.postures.len(), clip);
-                    good.push(Entry { character, motion, frames, fps, ..entry.clone() });
+                    let (character, motion) = (clip.character.clone(), clip.motion.clone());
+                    let found = Entry { character, motion, frames: clip.postures.len(), fps, ..entry.clone() };
+                    good.push((found, clip));
                 }
                 Err(trouble) => troubles.push(trouble),
             }

@@ -107,6 +107,7 @@ fn entries_without_a_usable_file_are_reported() {
     Clips { clips: vec![clip("Bo/b", "walk", 7)], fps: 12.0 }.save(&folder.join(&library.entries()[2].file)).unwrap();
     let library = Library::open(&folder);
     let (good, troubles) = library.checked(library.entries().iter());
+    let good: Vec<Entry> = good.into_iter().map(|(entry, _)| entry).collect();
     assert_eq!(good.iter().map(|e| (e.motion.as_str(), e.frames, e.fps)).collect::<Vec<_>>(), [("walk", 7, 12.0)]);
     let said: Vec<String> = troubles.iter().map(ToString::to_string).collect();
     assert!(
