@@ -5,6 +5,7 @@
 
 use super::episodes::{LEAST, Sure};
 use super::grid::Grid;
+use super::sides::Sides;
 use super::stance::FEWEST_MOTIONS;
 use super::{Options, Preset, Request};
 
@@ -19,18 +20,21 @@ pub struct Grounds {
     drawn: bool,
     /// The method, its strength, and whether limbs keep the style's lengths.
     how: (Preset, f64, bool),
+    /// To which sides the clips look, and which were mirrored.
+    pub sides: Sides,
     /// How sure it is, where the library tells.
     pub sure: Option<Sure>,
 }
 
 impl Grounds {
-    pub(super) fn new(grid: &Grid, request: &Request, options: &Options) -> Self {
+    pub(super) fn new(grid: &Grid, request: &Request, options: &Options, sides: Sides) -> Self {
         let known = |m: &usize| *m != grid.motion && grid.get(grid.style, *m).is_some();
         Self {
             style: request.style.to_owned(),
             shared: (0..grid.motions.len()).filter(known).count(),
             drawn: !request.keys.is_empty(),
             how: (options.preset, options.strength, options.keep_lengths),
+            sides,
             sure: None,
         }
     }
@@ -51,6 +55,11 @@ impl Grounds {
 
     /// What a person should know about the result, a sentence each.
     pub fn notes(&self) -> Vec<String> {
+        self.sides.notes().into_iter().chain(self.of_style()).collect()
+    }
+
+    /// What there is to say about what is known of the style.
+    fn of_style(&self) -> Vec<String> {
         let (preset, strength, lengths) = self.how;
         let style = &self.style;
         let copy = if lengths {

@@ -6,6 +6,7 @@
 //! - [`align`]: clips of one motion brought together in time; `build`: all clips on one body
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - `stance`, `moving`: the posture that is held and the movement, each a process of its own; `likeness`: which characters are alike
+//! - `sides`: all clips brought to the side to which the content's looks
 //! - `distinct`: a result that is told apart from other characters
 //! - `episodes`: how far few clips of a style are to be trusted ([`Sure`]); `grounds`: what a result rests on, in words
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
@@ -17,7 +18,7 @@
 //!
 //! Characters × motions form a grid of clips with holes; the hole (style, motion) is to be filled, the motion being known
 //! from other characters, the style from other motions. Everything happens with the pelvis at the origin, in torso
-//! lengths, and on the content's build; the result gets the style's build and size, and walks the content's way.
+//! lengths, on the content's build, and to the content's side; the result gets the style's build and size, and walks the content's way.
 //!
 //! # Example
 //!
@@ -78,10 +79,12 @@ mod key_pose;
 pub mod liang2012;
 mod likeness;
 mod moving;
+mod sides;
 mod stance;
 
 pub use episodes::Sure;
 pub use grounds::Grounds;
+pub use sides::Sides;
 
 use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
@@ -316,10 +319,11 @@ pub fn translate_and_judge(
     progress: &dyn Progress,
 ) -> Result<(Clip, Grounds), StyleError> {
     progress.report(STEP, 0.0)?;
-    let clips = &human_clips(clips, request)?[..];
+    let (clips, sides) = sides::to_content(human_clips(clips, request)?, request);
+    let clips = &clips[..];
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
-    let mut grounds = Grounds::new(&grid, request, options);
+    let mut grounds = Grounds::new(&grid, request, options, sides);
     let mut made = match options.preset {
         Preset::Rototoon => gaussian::predict(&grid, &keys, options.strength.max(1.0), progress)?,
         Preset::Bilinear => bilinear::predict(&grid, &keys, bilinear::Model::Asymmetric, options.rank),

@@ -4,6 +4,7 @@
 //! - [`conform`]: where the frames and places of one footage are in another one
 //! - [`correspondence`]: matching of freshly drawn contours to the parts
 //! - [`effects`]: the parameters of the effects for compositing hosts
+//! - [`facing`]: to which side a body looks in a clip, and clips in a mirror
 //! - [`falloff`]: how soft borders fall off
 //! - [`footage`]: the range of frames and the source of their pictures
 //! - [`limbs`]: the points of contours that determine key points
@@ -23,6 +24,7 @@ pub mod clip;
 pub mod conform;
 pub mod correspondence;
 pub mod effects;
+pub mod facing;
 pub mod falloff;
 pub mod footage;
 pub mod limbs;
