@@ -75,7 +75,7 @@ pub fn stance(clips: &str) -> Result<String, Failure> {
         return Err(Failure::Error(format!("clips: found {} clips, expected one", clips.clips.len())));
     };
     let looks = facing::of_clip(&clip.template, &clip.postures).map(Side::id);
-    let air = Contacts::of(&clip.template.legs(), &clip.postures).air;
+    let air = Contacts::air(&clip.template, &clip.postures);
     Ok(json!({"looks": looks, "air": air}).to_string())
 }
 

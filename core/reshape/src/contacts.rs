@@ -13,9 +13,14 @@
 //! fixed pelvis does not tell a jump from crouching: both bring the feet nearer to the pelvis. There only feet that pass
 //! each other quickly, as in a run, count as in the air.
 //!
+//! A clip on twos repeats each posture. A frame that repeats one is no evidence of standing: of such a clip the contacts are
+//! found on its drawings, each at its own time ([`Holds`]).
+//!
 //! Limits: the ground is level. A foot that slides on purpose does not stand.
 
 use rototoon_base::geometry::Point;
+use rototoon_base::scene::Template;
+use rototoon_base::scene::holds::Holds;
 use rototoon_base::scene::template::length;
 
 /// A foot moves as the ground if the difference is below this share of the ground's speed,
@@ -44,21 +49,28 @@ pub struct Contacts {
     pub ground: f64,
     /// Whether the clip has a way: its pelvis moves.
     pub way: bool,
+    /// When each posture is.
+    pub times: Vec<f64>,
 }
 
 impl Contacts {
-    /// Finds the contacts of a clip. `legs` are the key points of each leg, the last its foot. Without legs the figure is
-    /// never on the ground.
+    /// Finds the contacts of a clip on ones. `legs` are the key points of each leg, the last its foot. Without legs the figure
+    /// is never on the ground.
     pub fn of(legs: &[&[usize]], clip: &[Vec<Point>]) -> Self {
+        Self::at(legs, clip, (0..clip.len()).map(|t| t as f64).collect())
+    }
+
+    /// Finds the contacts of postures at these times, in frames.
+    pub fn at(legs: &[&[usize]], clip: &[Vec<Point>], times: Vec<f64>) -> Self {
         let n = clip.len();
         if legs.is_empty() {
-            return Self { stands: Vec::new(), air: vec![true; n], ground: 0.0, way: false };
+            return Self { stands: Vec::new(), air: vec![true; n], ground: 0.0, way: false, times };
         }
         let leg = leg_length(legs, clip);
         let way = clip.iter().any(|p| p[0].distance(clip[0][0]) > 1e-3 * leg);
         let foot = |leg: &&[usize]| -> Vec<Point> { clip.iter().map(|p| p[leg[leg.len() - 1]]).collect() };
         let feet: Vec<Vec<Point>> = legs.iter().map(foot).collect();
-        let speeds: Vec<Vec<Point>> = feet.iter().map(|foot| velocities(foot)).collect();
+        let speeds: Vec<Vec<Point>> = feet.iter().map(|foot| velocities(foot, &times)).collect();
         let lowest = |t: usize| (1..feet.len()).fold(0, |low, k| if feet[k][t].y > feet[low][t].y { k } else { low });
         let lower: Vec<usize> = (0..n).map(lowest).collect();
         let low: Vec<f64> = (0..n).map(|t| feet[lower[t]][t].y).collect();
@@ -73,7 +85,7 @@ impl Contacts {
         let stands = (0..feet.len()).map(|foot| {
             let one = |t: usize| {
                 let apart = |v: Point| (v - Point::new(ground, 0.0)).length();
-                let step = |a: usize| apart(feet[foot][a + 1] - feet[foot][a]);
+                let step = |a: usize| apart((feet[foot][a + 1] - feet[foot][a]) / (times[a + 1] - times[a]));
                 let beside = [t.checked_sub(1), Some(t).filter(|t| t + 1 < n)];
                 let held = beside.into_iter().flatten().any(|a| step(a) < OF_LEG * leg);
                 let with_ground = held || apart(speeds[foot][t]) < slow;
@@ -81,7 +93,15 @@ impl Contacts {
             };
             steady((0..n).map(one).collect())
         });
-        Self { stands: stands.collect(), air, ground, way }
+        Self { stands: stands.collect(), air, ground, way, times }
+    }
+
+    /// On which frames the figure of a clip is in the air. A clip on twos is looked at drawing by drawing.
+    pub fn air(template: &Template, clip: &[Vec<Point>]) -> Vec<bool> {
+        match Holds::of(template, clip) {
+            None => Self::of(&template.legs(), clip).air,
+            Some(holds) => holds.held(&Self::at(&template.legs(), &holds.drawings(clip), holds.times()).air),
+        }
     }
 
     /// The runs of frames during which a foot stands.
@@ -110,11 +130,11 @@ fn range(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Velocities by central differences, one-sided at the ends.
-fn velocities(points: &[Point]) -> Vec<Point> {
+fn velocities(points: &[Point], times: &[f64]) -> Vec<Point> {
     let last = points.len().saturating_sub(1);
     let at = |t: usize| {
         let (a, b) = (t.saturating_sub(1), (t + 1).min(last));
-        if a == b { Point::ZERO } else { (points[b] - points[a]) / (b - a) as f64 }
+        if a == b { Point::ZERO } else { (points[b] - points[a]) / (times[b] - times[a]) }
     };
     (0..points.len()).map(at).collect()
 }
@@ -146,7 +166,6 @@ pub(crate) fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use rototoon_base::scene::Template;
     use rototoon_base::scene::skeleton::{COUNT, LEGS};
     use std::f64::consts::TAU;
 
@@ -201,6 +220,21 @@ pub(crate) mod tests {
             assert!(wrong(&found, 48) <= most, "{} of 92 wrong: {found:?}", wrong(&found, 48));
             assert!(!found.air.iter().any(|air| *air));
         }
+    }
+
+    #[test]
+    fn a_foot_swings_on_twos_and_on_threes() {
+        // A slow step: in a hold the swinging foot does not move.
+        for (count, way) in [(2, true), (2, false), (3, true), (3, false)] {
+            let ones: Vec<Vec<Point>> = walk(49, way).into_iter().step_by(count).collect();
+            let clip: Vec<Vec<Point>> = (0..ones.len() * count).map(|t| ones[t / count].clone()).collect();
+            let holds = Holds::of(&Template::human(), &clip).unwrap();
+            let found = Contacts::at(&Template::human().legs(), &holds.drawings(&clip), holds.times());
+            assert_eq!(found.stands, human(&ones).stands, "{count} {way}");
+            assert!((found.ground - human(&ones).ground).abs() < 1e-9);
+        }
+        let air = Contacts::air(&Template::human(), &walk(48, true));
+        assert_eq!(air, human(&walk(48, true)).air);
     }
 
     #[test]

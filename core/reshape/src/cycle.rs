@@ -65,6 +65,12 @@ impl Cycle {
         (0..self.len()).map(|t| postures[self.frame(t)].iter().map(|p| *p + way(t)).collect()).collect()
     }
 
+    /// Times of the cycle's postures, for every posture of the repeated clip.
+    pub fn timed(&self, times: &[f64]) -> Vec<f64> {
+        let round = times[self.period] - times[0];
+        (0..self.len()).map(|t| times[self.frame(t)] + round * (t / self.period) as f64).collect()
+    }
+
     /// The middle of values on every frame of the repeated clip.
     pub fn middle<'a, T>(&self, values: &'a [T]) -> &'a [T] {
         &values[self.start()..=self.start() + self.period]

@@ -18,6 +18,9 @@
 //!
 //! **Cycles** are worked on as if they went on around ([`super::cycle`]).
 //!
+//! **Clips on twos** are worked on drawing by drawing, and each frame of a hold gets its drawing ([`Holds`]): a frame that repeats
+//! a drawing does not show that a foot stands, and on a treadmill the ground goes on with the drawings.
+//!
 //! **The drawing's own motion** has its pelvis in the right place already. Steps 1 and 4, and step 3 for the legs, are made there, for shoes, on the frames that
 //! the document does not show ([`stand_own`]).
 //!
@@ -30,6 +33,7 @@ use super::pitch::{FADE, pitches};
 use super::reach::reach;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Template;
+use rototoon_base::scene::holds::Holds;
 
 /// Rounds of the four steps.
 const ROUNDS: usize = 2;
@@ -75,12 +79,36 @@ pub fn stand(
     feet: &[Foot],
     ground: f64,
 ) -> Vec<Vec<f64>> {
+    let Some(holds) = Holds::of(template, clip) else {
+        return stand_at(template, postures, (clip, size), (feet, ground), every_frame(clip));
+    };
+    let before = postures.to_vec();
+    let mut made = holds.drawings(postures);
+    let drawings = holds.drawings(clip);
+    let turns = stand_at(template, &mut made, (&drawings, size), (feet, ground), holds.times());
+    postures.clone_from_slice(&holds.postures(&before, &made));
+    turns.iter().map(|turns| holds.held(turns)).collect()
+}
+
+/// The times of a clip on ones.
+fn every_frame(clip: &[Vec<Point>]) -> Vec<f64> {
+    (0..clip.len()).map(|t| t as f64).collect()
+}
+
+/// [`stand`] of postures at these times.
+fn stand_at(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    (clip, size): (&[Vec<Point>], f64),
+    on: (&[Foot], f64),
+    times: Vec<f64>,
+) -> Vec<Vec<f64>> {
     let Some(cycle) = Cycle::of(template, clip) else {
-        return stand_once(template, postures, (clip, size), feet, ground);
+        return stand_once(template, postures, (clip, size), on, times);
     };
     let before = cycle.walked(postures, size);
     let mut made = before.clone();
-    let turns = stand_once(template, &mut made, (&cycle.walked(clip, 1.0), size), feet, ground);
+    let turns = stand_once(template, &mut made, (&cycle.walked(clip, 1.0), size), on, cycle.timed(&times));
     corrected(postures, cycle.middle(&before), cycle.middle(&made));
     turns.iter().map(|turns| cycle.middle(turns).to_vec()).collect()
 }
@@ -91,16 +119,16 @@ fn corrected(postures: &mut [Vec<Point>], before: &[Vec<Point>], made: &[Vec<Poi
     pairs.for_each(|(p, (before, made))| *p += *made - *before);
 }
 
-/// [`stand`] of a clip with ends.
+/// [`stand_at`] of a clip with ends.
 fn stand_once(
     template: &Template,
     postures: &mut [Vec<Point>],
     (clip, size): (&[Vec<Point>], f64),
-    feet: &[Foot],
-    ground: f64,
+    (feet, ground): (&[Foot], f64),
+    times: Vec<f64>,
 ) -> Vec<Vec<f64>> {
     let legs = template.legs();
-    let contacts = Contacts::of(&legs, clip);
+    let contacts = Contacts::at(&legs, clip, times);
     let on = Ground { legs: &legs, feet, contacts: &contacts, y: ground, drawn: &[] };
     let mut turns = vec![Vec::new(); feet.len()];
     for _ in 0..ROUNDS {
@@ -127,8 +155,27 @@ pub fn stand_own(
     feet: &[Foot],
     drawn: &[Option<Vec<f64>>],
 ) -> (Vec<Vec<f64>>, Option<f64>) {
+    let whole = drawn.len() == postures.len();
+    let Some(holds) = Holds::of(template, postures).filter(|_| whole) else {
+        let times = every_frame(postures);
+        return own_at(template, postures, feet, (drawn, times));
+    };
+    let before = postures.to_vec();
+    let mut made = holds.drawings(postures);
+    let (turns, ground) = own_at(template, &mut made, feet, (&holds.drawings(drawn), holds.times()));
+    postures.clone_from_slice(&holds.postures(&before, &made));
+    (turns.iter().map(|turns| holds.held(turns)).collect(), ground)
+}
+
+/// [`stand_own`] of postures at these times.
+fn own_at(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    feet: &[Foot],
+    (drawn, times): (&[Option<Vec<f64>>], Vec<f64>),
+) -> (Vec<Vec<f64>>, Option<f64>) {
     let Some(cycle) = Cycle::of(template, postures).filter(|_| drawn.len() == postures.len()) else {
-        return own_once(template, postures, feet, drawn);
+        return own_once(template, postures, feet, (drawn, times));
     };
     let before = cycle.walked(postures, 1.0);
     let mut made = before.clone();
@@ -138,20 +185,20 @@ pub fn stand_own(
         *first = first.take().or_else(|| last.clone());
     }
     let shown = cycle.repeated(&round);
-    let (turns, ground) = own_once(template, &mut made, feet, &shown);
+    let (turns, ground) = own_once(template, &mut made, feet, (&shown, cycle.timed(&times)));
     corrected(postures, cycle.middle(&before), cycle.middle(&made));
     (turns.iter().map(|turns| cycle.middle(turns).to_vec()).collect(), ground)
 }
 
-/// [`stand_own`] of a motion with ends.
+/// [`own_at`] of a motion with ends.
 fn own_once(
     template: &Template,
     postures: &mut [Vec<Point>],
     feet: &[Foot],
-    drawn: &[Option<Vec<f64>>],
+    (drawn, times): (&[Option<Vec<f64>>], Vec<f64>),
 ) -> (Vec<Vec<f64>>, Option<f64>) {
     let legs = template.legs();
-    let contacts = Contacts::of(&legs, postures);
+    let contacts = Contacts::at(&legs, postures, times);
     let found = own_ground(postures, (&legs, feet), &contacts, drawn);
     let on = Ground { legs: &legs, feet, contacts: &contacts, y: found.unwrap_or(f64::INFINITY), drawn };
     let mut turns = vec![Vec::new(); feet.len()];
@@ -227,7 +274,7 @@ fn set_heights(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
         .map(|t| (t, above(t, stands(t) || !all)))
         .filter(|(_, shift)| shift.is_finite())
         .collect();
-    let shifts: Vec<f64> = (0..n).map(|t| between(&known, t).min(above(t, stands(t)))).collect();
+    let shifts: Vec<f64> = (0..n).map(|t| between(&known, t, &on.contacts.times).min(above(t, stands(t)))).collect();
     for (posture, shift) in postures.iter_mut().zip(shifts) {
         if shift.is_finite() {
             posture.iter_mut().for_each(|p| p.y += shift);
@@ -235,12 +282,12 @@ fn set_heights(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
     }
 }
 
-/// A value at a frame, linear between known frames, constant beyond them; 0 without any.
-fn between(known: &[(usize, f64)], t: usize) -> f64 {
+/// A value at a frame, linear over time between known frames, constant beyond them; 0 without any.
+fn between(known: &[(usize, f64)], t: usize, times: &[f64]) -> f64 {
     let after = known.partition_point(|(f, _)| *f < t);
     match (after.checked_sub(1).map(|k| known[k]), known.get(after)) {
         (_, Some((f, b))) if *f == t => *b,
-        (Some((f, a)), Some((g, b))) => a + (b - a) * (t - f) as f64 / (g - f) as f64,
+        (Some((f, a)), Some((g, b))) => a + (b - a) * (times[t] - times[f]) / (times[*g] - times[f]),
         (Some((_, a)), None) => a,
         (None, Some((_, b))) => *b,
         (None, None) => 0.0,
@@ -254,7 +301,8 @@ fn slips<'a>(postures: &[Vec<Point>], on: &Ground<'a>, size: f64) -> Vec<(&'a Fo
     for foot in on.feet {
         let ankle = foot_of(on.leg(foot));
         for run in on.contacts.runs(foot.leg) {
-            let goes = |t: usize| on.contacts.ground * size * (t - run.start) as f64;
+            let times = &on.contacts.times;
+            let goes = |t: usize| on.contacts.ground * size * (times[t] - times[run.start]);
             let at = |t: usize| postures[t][ankle].x - goes(t);
             let drawn = run.clone().find(|&t| on.drawn.get(t).is_some_and(Option::is_some));
             let stood = drawn.map_or_else(|| quantile(run.clone().map(at).collect(), 0.5), at);
@@ -275,7 +323,7 @@ fn set_way(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
     let known: Vec<(usize, f64)> =
         sums.iter().enumerate().filter(|(_, s)| s.1 > 0.0).map(|(t, s)| (t, s.0 / s.1)).collect();
     for (t, posture) in postures.iter_mut().enumerate() {
-        let shift = between(&known, t);
+        let shift = between(&known, t, &on.contacts.times);
         posture.iter_mut().for_each(|p| p.x += shift);
     }
 }
@@ -310,179 +358,4 @@ fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Poi
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::contacts::tests::{human, walk};
-    use super::super::foot::tests::shoe;
-    use super::*;
-    use rototoon_base::scene::skeleton::LEGS;
-
-    fn feet(turn: Option<f64>) -> Vec<Foot> {
-        let shin = Point::new(0.0, 40.0);
-        let foot = |leg| match turn {
-            Some(turn) => Foot::shoe(leg, shoe(0.0), shin, turn),
-            None => Foot::end(leg, shoe(0.0), shin),
-        };
-        (0..2).map(foot).collect()
-    }
-
-    fn soles(postures: &[Vec<Point>], feet: &[Foot], turns: &[Vec<f64>], t: usize) -> [f64; 2] {
-        [0, 1].map(|k| postures[t][LEGS[feet[k].leg][2]].y + feet[k].depth(turns[k][t]))
-    }
-
-    #[test]
-    fn standing_feet_are_flat_on_the_ground_through_a_walk() {
-        for way in [true, false] {
-            let clip = walk(72, way);
-            let placed = |p: &Vec<Point>| p.iter().map(|q| *q * 1.3 + Point::new(20.0, 11.0)).collect();
-            let mut made: Vec<Vec<Point>> = clip.iter().map(placed).collect();
-            let feet = feet(Some(0.3));
-            let turns = stand(&Template::human(), &mut made, (&clip, 1.3), &feet, 300.0);
-            let contacts = human(&clip);
-            let mut stood = 0;
-            for t in 0..72 {
-                let soles = soles(&made, &feet, &turns, t);
-                assert!(soles.iter().all(|y| *y < 300.0 + 0.5), "frame {t}: a sole under the ground: {soles:?}");
-                assert!((soles[0].max(soles[1]) - 300.0).abs() < 0.5, "frame {t}: nothing on the ground: {soles:?}");
-                for foot in (0..2).filter(|&foot| contacts.stands[foot][t]) {
-                    assert!((soles[foot] - 300.0).abs() < 0.5 && turns[foot][t] == 0.0, "frame {t}: {soles:?}");
-                    stood += 1;
-                }
-            }
-            assert!(stood > 60, "{stood}");
-            for run in contacts.runs(0).into_iter().filter(|_| way) {
-                let x = |t: usize| made[t][13].x - contacts.ground * 1.3 * (t - run.start) as f64;
-                assert!(run.clone().all(|t| (x(t) - x(run.start)).abs() < 0.5), "the foot slips");
-            }
-        }
-    }
-
-    #[test]
-    fn a_cycle_goes_round_on_other_legs_and_its_first_foot_stands() {
-        for way in [true, false] {
-            let clip = walk(25, way);
-            // Fitted to a figure with shorter thighs.
-            let shorter = |p: &Vec<Point>| {
-                let mut p = p.clone();
-                for leg in LEGS {
-                    let shift = (p[leg[0]] - p[leg[1]]) * 0.3;
-                    leg[1..].iter().for_each(|&k| p[k] += shift);
-                }
-                p
-            };
-            let mut made: Vec<Vec<Point>> = clip.iter().map(shorter).collect();
-            let feet = feet(Some(1.0));
-            let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 60.0);
-            let step = made[24][0] - made[0][0];
-            assert!(step.y.abs() < 1e-9, "the body rises by {} px at the seam", step.y);
-            for (k, (a, b)) in made[0].iter().zip(&made[24]).enumerate() {
-                assert!((*a + step).distance(*b) < 1e-6, "key point {k}: {a} {b}");
-            }
-            assert!(turns.iter().all(|turns| (turns[0] - turns[24]).abs() < 1e-9), "{turns:?}");
-            let stands = |t: usize| soles(&made, &feet, &turns, t);
-            assert!(
-                (0..8).all(|t| stands(t).iter().any(|y| (y - 60.0).abs() < 0.5)),
-                "a foot stands from the first frame on"
-            );
-        }
-    }
-
-    #[test]
-    fn a_dragging_toe_does_not_lift_the_figure_off_its_standing_foot() {
-        // The right foot has just left the ground when the clip begins.
-        let clip: Vec<Vec<Point>> = walk(60, true)[3..].to_vec();
-        let mut made = clip.clone();
-        let feet = feet(Some(1.0));
-        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 8.0);
-        let contacts = human(&clip);
-        for (t, _) in contacts.stands[0].iter().enumerate().filter(|(_, stands)| **stands) {
-            let sole = soles(&made, &feet, &turns, t)[0];
-            assert!((sole - 8.0).abs() < 0.5, "frame {t}: the standing foot is {} px above the ground", 8.0 - sole);
-        }
-        assert!(contacts.stands[0][0] && !contacts.stands[1][0]);
-    }
-
-    #[test]
-    fn the_own_cycle_goes_round() {
-        let clip = walk(25, true);
-        let mut drawn: Vec<Option<Vec<f64>>> = vec![None; 25];
-        drawn[24] = Some(vec![0.0, -0.4]);
-        let (mut made, feet) = (clip.clone(), feet(Some(1.0)));
-        let (turns, _) = stand_own(&Template::human(), &mut made, &feet, &drawn);
-        assert_eq!((&made[24], turns[1][24]), (&clip[24], -0.4), "what is shown stays");
-        let step = clip[24][0] - clip[0][0];
-        assert!(made[0].iter().zip(&made[24]).all(|(a, b)| (*a + step).distance(*b) < 1e-6));
-    }
-
-    #[test]
-    fn the_heel_comes_off_before_the_toe() {
-        let clip = walk(48, true);
-        let mut made = clip.clone();
-        let feet = feet(Some(0.3));
-        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 8.0);
-        let contacts = human(&clip);
-        let after = contacts.runs(0)[0].end;
-        let corner = |k: usize, t: usize| made[t][13] + Point::from_angle(turns[0][t]).rotate(feet[0].shape[k]);
-        let rolls = |t: usize| corner(3, t).y > 7.0 && corner(1, t).y < corner(3, t).y - 2.0;
-        assert!((after..after + 4).any(rolls), "the toe stands and the heel is up");
-        assert!(!(after - 3..after).any(rolls));
-    }
-
-    #[test]
-    fn a_jump_keeps_its_height() {
-        let stood = walk(1, true).remove(0);
-        let height = |t: usize| if (10..20).contains(&t) { 40.0 * (0.314_16 * (t - 10) as f64).sin() } else { 0.0 };
-        let lifted = |t: usize| stood.iter().map(|p| *p - Point::new(0.0, height(t))).collect();
-        let clip: Vec<Vec<Point>> = (0..30).map(lifted).collect();
-        let mut made = clip.clone();
-        let feet = feet(Some(0.3));
-        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), &feet, 50.0);
-        let low = |t: usize| soles(&made, &feet, &turns, t).into_iter().fold(f64::MIN, f64::max);
-        assert!((low(3) - 50.0).abs() < 0.5 && (low(15) - 10.0).abs() < 2.0, "{} {}", low(3), low(15));
-    }
-
-    #[test]
-    fn the_own_motion_keeps_its_pelvis_and_the_frames_that_are_shown() {
-        let clip = walk(48, true);
-        let contacts = human(&clip);
-        let first = contacts.runs(0)[0].start + 4; // while the other foot swings
-        let mut drawn: Vec<Option<Vec<f64>>> = vec![None; 48];
-        drawn[first] = Some(vec![0.0, -0.4]);
-        let (mut made, feet) = (clip.clone(), feet(Some(1.0)));
-        let (turns, ground) = stand_own(&Template::human(), &mut made, &feet, &drawn);
-        let ground = ground.unwrap();
-        assert!((ground - clip[first][13].y - 8.0).abs() < 1e-9, "the foot that is drawn stands on it: {ground}");
-        assert_eq!((&made[first], turns[0][first], turns[1][first]), (&clip[first], 0.0, -0.4));
-        for (t, (made, clip)) in made.iter().zip(&clip).enumerate() {
-            assert!((0..12).all(|k| made[k] == clip[k]), "frame {t}: only legs move");
-            for foot in 0..2 {
-                let sole = made[LEGS[foot][2]].y + feet[foot].depth(turns[foot][t]);
-                assert!(t == first || sole < ground + 0.5, "frame {t}: a sole under the ground");
-                if contacts.stands[foot][t] && t != first {
-                    assert!((sole - ground).abs() < 0.5 && turns[foot][t] == 0.0, "frame {t}: {sole} {ground}");
-                }
-            }
-        }
-        // What a document shows of every frame stays, and so do legs without shoes.
-        let all = vec![Some(vec![0.3, 0.2]); 48];
-        let mut same = clip.clone();
-        let (turns, _) = stand_own(&Template::human(), &mut same, &feet, &all);
-        assert_eq!((same, turns), (clip.clone(), vec![vec![0.3; 48], vec![0.2; 48]]));
-        let mut same = clip.clone();
-        stand_own(&Template::human(), &mut same, &self::feet(None), &vec![None; 48]);
-        assert_eq!(same, clip);
-    }
-
-    #[test]
-    fn one_drawn_foot_or_none_is_enough() {
-        let clip = walk(48, false);
-        let mut made = clip.clone();
-        assert_eq!(stand(&Template::human(), &mut made, (&clip, 1.0), &[], 50.0), Vec::<Vec<f64>>::new());
-        assert_eq!(made, clip);
-        let foot = feet(None).remove(1);
-        let turns = stand(&Template::human(), &mut made, (&clip, 1.0), std::slice::from_ref(&foot), 50.0);
-        let contacts = human(&clip);
-        let sole = |t: usize| made[t][16].y + foot.depth(turns[0][t]);
-        assert!((0..48).all(|t| sole(t) < 50.5));
-        assert!(contacts.runs(1)[0].clone().all(|t| (sole(t) - 50.0).abs() < 0.8));
-    }
-}
+mod tests;

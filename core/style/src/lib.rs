@@ -12,7 +12,7 @@
 //! - [`bilinear`]: style and content matrices (Tenenbaum & Freeman 2000)
 //! - [`factorisation`]: non-negative style factorisation (Liang et al. 2012)
 //! - [`liang2012`]: translation with it
-//! - [`finish`]: limb lengths, standing feet
+//! - [`finish`]: limb lengths, standing feet; `twos`: a content on twos gives a result on twos
 //!
 //! # The task
 //!
@@ -81,6 +81,7 @@ mod likeness;
 mod moving;
 mod sides;
 mod stance;
+mod twos;
 
 pub use episodes::Sure;
 pub use grounds::Grounds;
@@ -88,6 +89,7 @@ pub use sides::Sides;
 
 use grid::{Grid, Row};
 use rototoon_base::scene::clip::resample;
+use rototoon_base::scene::holds::Holds;
 use rototoon_base::scene::skeleton::{COUNT, LEGS, Posture, torso};
 use rototoon_base::scene::template::length;
 use rototoon_base::scene::{Cancelled, Clip, Progress};
@@ -342,14 +344,21 @@ pub fn translate_and_judge(
     }
     let size = size_of(&grid, request);
     let content = clips.iter().find(|c| c.character == request.content && c.motion == request.motion);
+    let holds = content.and_then(|content| Holds::of(&content.template, &content.postures));
     if let Some(content) = content.and_then(Clip::human) {
         place(&mut postures, &content, size);
-        if options.keep_contacts {
-            finish::keep_contacts(&mut postures, &content);
+        let contacts = options.keep_contacts;
+        match &holds {
+            Some(holds) => twos::finish(&mut postures, &content, holds, &keys, contacts),
+            None if contacts => finish::keep_contacts(&mut postures, &content),
+            None => {}
         }
     }
     let mut clip = Clip::new(request.style, request.motion, postures);
     clip.deviation = made.deviation.iter().map(|frame| frame.iter().map(|s| s * size).collect()).collect();
+    if let Some(holds) = holds {
+        clip.deviation = holds.held(&holds.drawings(&clip.deviation));
+    }
     if options.pace == Pace::Style {
         align::change_pace(&mut clip, align::pace(clips, request));
     }

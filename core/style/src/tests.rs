@@ -467,3 +467,42 @@ fn clips_that_were_mirrored_or_have_no_side_are_named() {
     let posed = notes(&library(), &[KeyPose { frame: 7, posture }]);
     assert!(posed[0].starts_with("the drawn pose of frame 7 looks to the other side"), "{posed:?}");
 }
+
+/// The library with the content's clip on twos or threes, each drawing farther to the right.
+fn on_twos(count: usize) -> Vec<Clip> {
+    let mut clips = library();
+    let content = clips.iter_mut().find(|c| (c.character.as_str(), c.motion.as_str()) == ("plain", "run")).unwrap();
+    let drawing = |(k, p): (usize, &Vec<Point>)| p.iter().map(|q| *q + Point::new(k as f64, 0.0)).collect::<Vec<_>>();
+    let drawings: Vec<Vec<Point>> = content.postures.iter().enumerate().map(drawing).collect();
+    content.postures = drawings.into_iter().flat_map(|p| vec![p; count]).collect();
+    clips
+}
+
+#[test]
+fn a_content_on_twos_gives_a_result_on_twos_and_a_hold_is_no_contact() {
+    for count in [2, 3] {
+        let make = |keys: &[KeyPose], keep_contacts: bool| {
+            let options = Options { keep_contacts, ..Options::default() };
+            translate(&on_twos(count), &request(keys), &options, &Silent).unwrap()
+        };
+        let made = make(&[], true);
+        for t in 0..24 * count {
+            let begin = t - t % count;
+            assert_eq!(
+                (&made.postures[t], &made.deviation[t]),
+                (&made.postures[begin], &made.deviation[begin]),
+                "frame {t}"
+            );
+        }
+        assert_eq!(made, make(&[], false), "every drawing is far from the one before: no foot stands");
+        let truth = clip(1, 1, 24);
+        let seen: Vec<Vec<Point>> = made.postures.iter().step_by(count).cloned().collect();
+        assert!(apart(&seen, &truth.postures) < 0.75 * apart(&clip(0, 1, 24).postures, &truth.postures));
+        let posture = human(&truth, 5);
+        let posed = make(&[KeyPose { frame: 5 * count + 1, posture }], true).postures;
+        for t in 5 * count..6 * count {
+            let off = (0..COUNT).map(|k| (posed[t][k] - posed[t][0]).distance(posture[k] - posture[0]));
+            assert!(off.fold(0.0, f64::max) < 1e-6, "a pose that is drawn for one frame of a hold is that of all");
+        }
+    }
+}

@@ -7,6 +7,7 @@
 //! - [`facing`]: to which side a body looks in a clip, and clips in a mirror
 //! - [`falloff`]: how soft borders fall off
 //! - [`footage`]: the range of frames and the source of their pictures
+//! - [`holds`]: clips on twos and threes, as the drawings that their frames show
 //! - [`limbs`]: the points of contours that determine key points
 //! - [`outcome`]: what became of a part on each frame: sure, doubtful or lost
 //! - [`palette`]: colours that distinguish parts
@@ -27,6 +28,7 @@ pub mod effects;
 pub mod facing;
 pub mod falloff;
 pub mod footage;
+pub mod holds;
 pub mod limbs;
 pub mod outcome;
 pub mod palette;

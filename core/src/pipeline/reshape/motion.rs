@@ -4,6 +4,8 @@
 //! drawing itself, its feet are put on the drawing's ground ([`crate::reshape::stand`]). The ground is found in the
 //! drawing: the lowest point of its feet, on most of the frames that show it.
 //!
+//! A clip on twos gives a drawing on twos ([`Holds`]): the frames of a hold get the same limbs, bends and feet.
+//!
 //! In a motion of the drawing itself the feet are as drawn on the frames that the document shows, and on the ground on
 //! the others.
 
@@ -18,8 +20,9 @@ use crate::reshape::limb::{Bend, bend_at};
 use crate::reshape::puppet::LimbPose;
 use crate::reshape::stand::{stand, stand_own};
 use crate::reshape::still::keep_still;
+use crate::scene::holds::Holds;
 use crate::scene::limbs::LimbSet;
-use crate::scene::{Clip, FrameNumber, Part};
+use crate::scene::{Clip, FrameNumber, Part, Template};
 use std::collections::BTreeSet;
 
 /// Two postures are one if their key points are this near, as a root mean square in torso lengths, whatever the shift.
@@ -82,16 +85,17 @@ pub(super) fn of(
         .collect();
     let floor = ground(parts, &feet.feet, &shown).unwrap_or(known.rest[0].y);
     let (mut postures, own) = (fitted.postures, fitted.own);
+    let mut begins = begins(template, if own { &postures } else { &moves.postures });
     let (turns, ground) = if own {
         let drawn = drawn_frames(&known, &examples, &postures);
-        let (turns, found) = stand_own(template, &mut postures, &feet.plain(), &drawn);
+        let (turns, found) = own_on_ground(template, &mut postures, &feet.plain(), &drawn, &mut begins);
         (turns, found.unwrap_or(floor))
     } else {
         on_ground(&known, &moves, &mut postures, (fitted.size, &feet.plain(), floor))
     };
     computable(&postures)?;
     let frame_limbs = |(t, posture): (usize, &Vec<Point>)| {
-        feet.added(poses.of(posture, first + t as FrameNumber), posture, |k| turns[k][t])
+        feet.added(poses.of(posture, first + begins[t] as FrameNumber), posture, |k| turns[k][t])
     };
     let (root, frames) = (known.rest[0], postures.iter().enumerate().map(frame_limbs).collect());
     Ok(Motion {
@@ -108,6 +112,35 @@ pub(super) fn of(
         mirrored: moves.mirrored,
         sides: moves.sides,
     })
+}
+
+/// For each frame of a clip the first frame of its drawing.
+fn begins(template: &Template, clip: &[Vec<Point>]) -> Vec<usize> {
+    let holds = Holds::of(template, clip);
+    (0..clip.len()).map(|t| holds.as_ref().map_or(t, |holds| holds.begin(t))).collect()
+}
+
+/// Puts the feet of the drawing's own motion on its ground. Where the document itself shows what is drawn on a frame of a hold, that
+/// is no repeat. Returns the feet's turns by frame, and the ground where it is known.
+fn own_on_ground(
+    template: &Template,
+    postures: &mut [Vec<Point>],
+    feet: &[Foot],
+    drawn: &[Option<(FrameNumber, Vec<f64>)>],
+    begins: &mut [usize],
+) -> (Vec<Vec<f64>>, Option<f64>) {
+    let before = postures.to_vec();
+    let turned: Vec<_> = drawn.iter().map(|shown| shown.as_ref().map(|(_, turns)| turns.clone())).collect();
+    let (mut turns, ground) = stand_own(template, postures, feet, &turned);
+    for (t, begin) in begins.iter_mut().enumerate() {
+        let shown = |t: usize| drawn[t].as_ref().map(|(frame, _)| *frame);
+        if let Some(drawn) = turned[t].as_ref().filter(|_| shown(t) != shown(*begin)) {
+            postures[t].clone_from(&before[t]);
+            turns.iter_mut().zip(drawn).for_each(|(turns, drawn)| turns[t] = *drawn);
+            *begin = t;
+        }
+    }
+    (turns, ground)
 }
 
 /// Puts the feet of another figure's motion on the drawing's ground. `size`: the clip's unit in pixels. Returns the feet's turns
@@ -151,8 +184,8 @@ fn example(
     Some(Example { frame: *frame, limbs, posture: posture.clone(), turns })
 }
 
-/// For each posture of the drawing's own motion the turns of its feet, if the document shows that posture.
-fn drawn_frames(known: &Shown, examples: &[Example], postures: &[Vec<Point>]) -> Vec<Option<Vec<f64>>> {
+/// For each posture of the drawing's own motion the frame of the document that shows it, if any does, and the turns of its feet.
+fn drawn_frames(known: &Shown, examples: &[Example], postures: &[Vec<Point>]) -> Vec<Option<(FrameNumber, Vec<f64>)>> {
     let told: Vec<usize> = (0..known.told.len()).filter(|&k| known.told[k]).collect();
     let apart = |a: &[Point], b: &[Point]| {
         let shift = told.iter().map(|&k| b[k] - a[k]).sum::<Point>() / told.len().max(1) as f64;
@@ -162,7 +195,7 @@ fn drawn_frames(known: &Shown, examples: &[Example], postures: &[Vec<Point>]) ->
     let of = |posture: &Vec<Point>| {
         let off = examples.iter().map(|example| (apart(posture, &example.posture), example));
         let (off, nearest) = off.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        nearest.turns.clone().filter(|_| off <= ONE_POSTURE)
+        nearest.turns.clone().filter(|_| off <= ONE_POSTURE).map(|turns| (nearest.frame, turns))
     };
     postures.iter().map(of).collect()
 }
