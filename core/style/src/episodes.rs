@@ -42,9 +42,9 @@ pub struct Sure {
     /// Mean error of the posture that a character holds through a clip, over that of copying the content. Below 1 the
     /// translation tells more than the copy.
     pub of_copying: f64,
-    /// How much of the result is the content's own posture, 0 to 1 (β).
+    /// What the change is added to (β): 0 the mean of all characters, 1 the content's own posture, else between them.
     pub content: f64,
-    /// How much of the predicted change is made, 0 to 1 (α).
+    /// How much of the predicted change from the mean of all characters is made, 0 to 1 (α).
     pub offset: f64,
 }
 

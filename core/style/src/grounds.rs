@@ -88,6 +88,23 @@ impl Grounds {
     }
 }
 
+/// What the posture that is held is made of, where it is not the plain prediction.
+fn made(sure: &Sure) -> String {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let base = match sure.content {
+        content if content >= 1.0 => "the content's".to_owned(),
+        content if content > 0.0 => {
+            format!("one that goes {} of the way from the mean of all characters to the content's", percent(content))
+        }
+        _ => "the mean of all characters".to_owned(),
+    };
+    match sure.offset {
+        offset if offset <= 0.0 => format!("this posture is {base}, without the predicted change"),
+        offset if offset < 1.0 => format!("{} of the predicted change is made, beginning at {base}", percent(offset)),
+        _ => format!("the predicted change is made, beginning at {base}, not at the mean of all characters"),
+    }
+}
+
 /// How sure a result is, in words.
 fn said(sure: &Sure) -> String {
     let mut said = format!(
@@ -95,15 +112,8 @@ fn said(sure: &Sure) -> String {
         100.0 * sure.of_copying,
         sure.episodes
     );
-    let mut less = Vec::new();
-    if sure.offset < 1.0 {
-        less.push(format!("only {:.0} % of the change is made", 100.0 * sure.offset));
-    }
-    if sure.content > 0.0 {
-        less.push(format!("{:.0} % of the posture that is held is the content's", 100.0 * sure.content));
-    }
-    if !less.is_empty() {
-        said += &format!("; the style's clips tell little about this motion, so {}", less.join(", and "));
+    if sure.offset < 1.0 || sure.content > 0.0 {
+        said += &format!("; in the rehearsals this was nearer to the truth: {}", made(sure));
     }
     if sure.of_copying >= 1.0 {
         said += "; a copy of the content would be as near";
@@ -121,12 +131,16 @@ mod tests {
         let expected =
             "expect 58 % of the error of copying, in the posture that is held (9 rehearsals on other characters)";
         assert_eq!(sure(0.58, 0.0, 1.0), expected);
-        let little = "; the style's clips tell little about this motion, so ";
-        assert_eq!(
-            sure(0.58, 0.25, 1.0),
-            format!("{expected}{little}25 % of the posture that is held is the content's")
-        );
-        assert_eq!(sure(0.58, 0.0, 0.5), format!("{expected}{little}only 50 % of the change is made"));
-        assert!(sure(1.02, 0.5, 0.5).ends_with("content's; a copy of the content would be as near"));
+        let so = "; in the rehearsals this was nearer to the truth: ";
+        let between = "one that goes 25 % of the way from the mean of all characters to the content's";
+        let begins = "the predicted change is made, beginning at";
+        let not = ", not at the mean of all characters";
+        assert_eq!(sure(0.58, 0.25, 1.0), format!("{expected}{so}{begins} {between}{not}"));
+        assert_eq!(sure(0.58, 1.0, 1.0), format!("{expected}{so}{begins} the content's{not}"));
+        assert_eq!(sure(0.58, 0.0, 0.5), format!("{expected}{so}50 % of {begins} the mean of all characters"));
+        assert_eq!(sure(0.58, 1.0, 0.5), format!("{expected}{so}50 % of {begins} the content's"));
+        let without = "the content's, without the predicted change";
+        assert_eq!(sure(0.58, 1.0, 0.0), format!("{expected}{so}this posture is {without}"));
+        assert!(sure(1.02, 0.5, 0.5).ends_with("to the content's; a copy of the content would be as near"));
     }
 }
