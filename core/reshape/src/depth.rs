@@ -99,7 +99,8 @@ pub fn infer(depths: &[f64], marks: &[Mark], kin: &Kin, frame: i32) -> Result<Ve
         return Err(DepthError::Contradiction { frame, marks });
     }
     let marks: Vec<(usize, usize)> = active.into_iter().map(|k| (marks[k].front, marks[k].behind)).collect();
-    let mut order = Order { depths: spread(depths, &marks), marks, kin };
+    let depths = spread(depths, &marks);
+    let mut order = Order { depths, marks: with_kin(marks, kin), kin };
     // Each turn mends a mark and breaks none.
     for _ in 0..order.marks.len() {
         let broken = order.marks.iter().find(|(front, behind)| order.depths[*front] <= order.depths[*behind]);
@@ -117,6 +118,36 @@ pub fn changed(depths: &[f64], found: &[f64], marks: &[Mark], frame: i32) -> Vec
     };
     let pairs = (0..depths.len()).flat_map(|a| (0..depths.len()).map(move |b| (a, b)));
     pairs.filter(|&(a, b)| found[a] > found[b] && depths[a] < depths[b] && !named(a, b)).collect()
+}
+
+/// Marks, and what they mean for the kin of their parts: what hides an arm hides its hand. Kin with marks of its own obeys those alone.
+fn with_kin(marks: Vec<(usize, usize)>, kin: &Kin) -> Vec<(usize, usize)> {
+    let of = |part: usize| kin.with.get(part).into_iter().flatten().copied();
+    let mut all = marks.clone();
+    let told: Vec<usize> = marks.iter().flat_map(|(front, behind)| [*front, *behind]).collect();
+    for (front, behind) in marks {
+        let below = of(behind).filter(|&k| !of(front).any(|own| own == k)).map(|k| (front, k));
+        let above = of(front).filter(|&k| !of(behind).any(|own| own == k)).map(|k| (k, behind));
+        for (a, b) in below.chain(above).collect::<Vec<_>>() {
+            let own = if a == front { b } else { a };
+            if !told.contains(&own) && !leads(&all, b, a) {
+                all.push((a, b));
+            }
+        }
+    }
+    all
+}
+
+/// Whether marks put a part in front of another, or it is that one.
+fn leads(marks: &[(usize, usize)], front: usize, behind: usize) -> bool {
+    let (mut seen, mut open) = (vec![front], vec![front]);
+    while let Some(part) = open.pop() {
+        let next = marks.iter().filter(|(from, _)| *from == part).map(|(_, to)| *to);
+        let new: Vec<usize> = next.filter(|to| !seen.contains(to)).collect();
+        seen.extend(&new);
+        open.extend(new);
+    }
+    seen.contains(&behind)
 }
 
 /// The depths with parts of equal depth apart where marks say so: the least change, which Hildreth's method (cyclic dual coordinate
@@ -183,14 +214,9 @@ impl Order<'_> {
                 self.marks.iter().map(move |&(front, behind)| if rise { (behind, front) } else { (front, behind) });
             ends.filter(move |(from, _)| *from == part).map(|(_, to)| to)
         };
-        let leads_to_other = |start: usize| {
-            let (mut seen, mut open) = (vec![start], vec![start]);
-            while let Some(part) = open.pop() {
-                let new: Vec<usize> = next(part).filter(|to| !seen.contains(to)).collect();
-                seen.extend(&new);
-                open.extend(new);
-            }
-            seen.contains(&other)
+        let leads_to_other = |start: usize| match rise {
+            false => leads(&self.marks, start, other),
+            true => leads(&self.marks, other, start),
         };
         let (mut group, mut open) = (vec![mover], vec![mover]);
         while let Some(part) = open.pop() {
