@@ -52,7 +52,6 @@ pub use gaps::without_file;
 pub use guesses::{guessed_translation, guesses};
 pub use outdated::outdated;
 pub use outside::outside;
-pub use outside::outside;
 pub use paint::{Cels, undrawn};
 pub use picture::{Picture, RenderJob};
 pub use recolour::{colours, named as named_colours, recolour};

@@ -11,7 +11,7 @@ use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
 
 /// The document's fields that other stages read.
-const OTHERS: [&str; 17] = [
+const OTHERS: &[&str] = &[
     "drawings",
     "pairs",
     "pegs",
@@ -36,7 +36,7 @@ impl Document {
     /// A warning for each unknown field with almost the name of a known one.
     pub fn misspelt(&self) -> Problems {
         let mut problems = Problems::default();
-        let top = [&TOP[..], &OTHERS].concat();
+        let top = [&TOP[..], OTHERS].concat();
         warn("", &self.layout.top, &top, &mut problems);
         warn("footage", &self.layout.footage, &[&FOOTAGE[..], &[GAPS]].concat(), &mut problems);
         for (index, part) in self.scene.parts.iter().enumerate() {
