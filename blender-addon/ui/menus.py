@@ -48,7 +48,7 @@ class ROTOTOON_MT_lines(_Menu):
 class ROTOTOON_MT_paint(_Menu):
     bl_idname = "ROTOTOON_MT_paint"
     bl_label = "Paint"
-    names = ("paint_bucket", "fill_drawings", "recolour", "", "next_doubtful_region", "", "clear_fills")
+    names = ("paint_bucket", "fill_drawings", "", "recolour", "remove_recolour", "", "next_doubtful_region", "", "clear_fills")
 
 
 class ROTOTOON_MT_style(_Menu):

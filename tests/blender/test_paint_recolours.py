@@ -135,6 +135,10 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(addon, painted):  # 
     # Without a material, one is made of the colour.
     assert bpy.ops.rototoon.recolour(old=BODY, colour=WET) == {"FINISHED"}
     assert names(addon, painted)[1:] == ["Paint 334059"] * 5
+    # From the menu it is the last one that goes.
+    assert bpy.ops.rototoon.recolour(old="Paint 334059", new="Wet") == {"FINISHED"}
+    assert bpy.ops.rototoon.remove_recolour() == {"FINISHED"}
+    assert [entry[:2] for entry in addon("scripting").recolours(painted)] == [(BODY, "Paint 334059")]
 
 
 def test_documents_keep_them(addon, painted, tmp_path):  # noqa: F811

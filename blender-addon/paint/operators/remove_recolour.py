@@ -14,7 +14,7 @@ class ROTOTOON_OT_remove_recolour(Guarded, OnDrawing, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     changes = guard.SETTINGS
 
-    place: bpy.props.IntProperty(name="Place", description="The place in the list, from 0", default=0, min=0)
+    place: bpy.props.IntProperty(name="Place", description="The place in the list, from 0; -1 is the last one", default=-1, min=-1)
 
     @classmethod
     def lacking(cls, ob, changes: str) -> str:
@@ -23,7 +23,8 @@ class ROTOTOON_OT_remove_recolour(Guarded, OnDrawing, bpy.types.Operator):
         return why or ("" if len(ob.rototoon.recolours) else "No colour becomes another one: press Recolour first")
 
     def run(self, context) -> str:
-        entry = recolours.remove(context.object, self.place)
+        last = len(context.object.rototoon.recolours) - 1
+        entry = recolours.remove(context.object, last if self.place < 0 else self.place)
         return f"Removed{f': {entry.said()}' if entry else ''}; press Fill Drawings to paint the old colour again"
 
 
