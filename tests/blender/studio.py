@@ -289,6 +289,11 @@ def _delivered_again(addon, ob):
 
 
 _C, _I, _L, _P = frozenset({CONTOURS}), frozenset({INK, FRONT}), frozenset({LINES}), frozenset({PAINT})
+# The place is given: to find it takes two seconds, and is tested elsewhere.
+_PLACED = {
+    "filepath": "{folder}/again/new_101.png", "compare": False, "frame_offset": 100, "scale": float(shots.SCALE), "find_shift": False,
+    "shift": (shots.BORDER, shots.BORDER),
+}  # fmt: skip
 _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
     "apply_motion": Call(_C, _C, options=_STYLED),
@@ -299,9 +304,7 @@ OPERATORS = {
     "clear_in_betweens": Call(_I, prepare=_in_between),
     "clear_lines": Call(_L, prepare=_traced),
     "collect_results": Call(_C, _C, options={"directory": "{folder}/farm"}),
-    "conform": Call(
-        _C | {SNAPPED, LIMBS}, _C | {SNAPPED, LIMBS}, prepare=_delivered_again, options={"filepath": "{folder}/again/new_101.png"}
-    ),
+    "conform": Call(_C | {SNAPPED, LIMBS}, _C | {SNAPPED, LIMBS}, prepare=_delivered_again, options=_PLACED),
     "contours_to_mask": Call(changes=False),
     "define_limbs": Call(frozenset({LIMBS}), prepare=_line_without_name, options={"point": "r_knee"}),
     "depth_mark": Call(options={"front": "Part 1", "behind": "Part 2"}),
