@@ -14,6 +14,8 @@ STEPS = (-2, -1, 0, 1, 2, AGAIN, 4, 5, 7, 8)
 FIRST = 1001
 MASK = ("studio_mask", "FLOAT", "POINT")
 LEFT_OVER = "Left over: Contours"
+GIVEN = {"scale": float(shots.SCALE), "find_shift": False, "shift": (shots.BORDER, shots.BORDER)}
+"""The place of the old picture in the new one. To find it takes a second or two, so only tests of that do."""
 
 
 @pytest.fixture(scope="module")
@@ -122,7 +124,7 @@ def test_strokes_stay_the_same_strokes(addon, film, delivered):
     handle.attributes.new("studio_id", "INT", "CURVE").data.foreach_set("value", np.array([7, 9], np.int32))
     gp.put(handle, "radius", np.full(count, 0.04, np.float32))
     materials = gp.value(handle, "material_index", 2)
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     handle = gp.drawings(shots.layer_of(film))[8][0]
     assert np.array_equal(gp.get(handle, MASK[0], count), mask)
     assert gp.get(handle, "studio_id", 2).tolist() == [7, 9]
@@ -141,7 +143,7 @@ def test_corrections_absences_and_further_fields_go_along(addon, film, delivered
     part = film.rototoon.parts[0]
     part.extra = json.dumps({"absent": [[2, 2], [7, 7]], "note": "kept"})
     film.rototoon.extra = json.dumps({"depth_marks": [{"front": "Part 1", "behind": "Part 2", "first": 8, "last": 9}], "studio": 1})
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert json.loads(part.extra) == {"absent": [[1004, 1004]], "note": "kept"}
     extra = json.loads(film.rototoon.extra)
     assert extra["studio"] == 1 and extra["depth_marks"][0] == {"front": "Part 1", "behind": "Part 2", "first": 1009, "last": 1010}
@@ -190,7 +192,7 @@ def test_other_numbers_change_no_bit(addon, film, tmp_path):
 @pytest.mark.parametrize(("options", "first"), [({"timing": "SCENE"}, 1), ({"timing": "FRAME", "frame": 101}, 101)])
 def test_the_first_picture_is_on_the_frame_that_the_artist_wants(addon, film, delivered, options, first):
     before = pixels(addon, film)
-    bpy.ops.rototoon.conform(filepath=delivered, **options)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN, **options)
     assert film.rototoon.frame_offset == first - 1001
     after = pixels(addon, film)
     assert [frame for frame, kind in frames(addon, film).items() if kind == "KEYFRAME"] == [first + 2, first + 5, first + 9]
@@ -201,7 +203,7 @@ def test_the_first_picture_is_on_the_frame_that_the_artist_wants(addon, film, de
 def test_undo_restores_all(addon, film, delivered):
     before, name = everything(film), film.name
     bpy.ops.ed.undo_push(message="the film")
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     bpy.ops.ed.undo_push(message="conform")
     assert everything(bpy.data.objects[name]) != before
     bpy.ops.ed.undo()
@@ -231,7 +233,7 @@ def test_a_locked_layer_is_refused_at_once(addon, film, delivered, group):
         shots.layer_of(film).lock = True
     before = everything(film)
     with pytest.raises(RuntimeError, match='the layer "Contours" is locked: unlock it first'):
-        bpy.ops.rototoon.conform(filepath=delivered)
+        bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert everything(film) == before
 
 
@@ -243,7 +245,7 @@ def test_layers_of_the_artist_alone_stay_and_are_named(addon, film, delivered):
     gp.put(drawing, "position", np.array([[0, 0, 0], [1, 0, 1]], np.float32))
     state = shots.snapshot(film)[0]["Mine", 9]
     layer.lock = True
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert shots.snapshot(film)[0]["Mine", 9] == state
     assert 'the layer "Mine" is yours alone and left as before, though the drawings beside it have moved' in said(addon).text
 
@@ -255,7 +257,7 @@ def test_points_off_the_plane_keep_their_distance(addon, film, delivered):
     points[0, 1] = 0.25
     gp.put(handle, "position", points)
     before = pixels(addon, film)[1]
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     handle = gp.drawings(shots.layer_of(film))[1][0]
     points = gp.positions(handle, int(gp.offsets(handle)[-1]))
     assert abs(points[0, 1]) > 0.2 and np.abs(points[1:, 1]).max() < 1e-5
@@ -269,7 +271,7 @@ def test_through_a_moving_camera(addon, film, delivered):
     camera.location.x += 0.7
     camera.keyframe_insert("location", frame=9)
     before = pixels(addon, film)
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     after = pixels(addon, film)
     for new, old in {1: 1, 3: 3, 7: 8, 8: 9}.items():
         assert away(after[new], before[old]) < 0.5
@@ -326,7 +328,7 @@ def test_results_end_where_another_drawing_follows(addon, film, delivered):
     # The drawing of frame 7, whose picture is gone, is held on 8.
     gp.remove_frames(layer, [8])
     holds.note(film.data, "Lines", [8], ())
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     now = {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in gp.drawings(layer).items()}
     assert list(now) == list(range(1, 9)) and [frame for frame, count in now.items() if not count] == [4]
     assert 'layer "Lines": what was generated is left out on 4, since the drawing was drawn again' in said(addon).text
@@ -342,7 +344,7 @@ def test_a_reference_image_shows_the_new_footage(addon, library, fake, delivered
     shots.draw(addon, ob, 1, [shots.diamond(0), shots.square(0)])
     bpy.ops.rototoon.match_contours()
     before = pixels(addon, ob)[1]
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     empty = ob.rototoon.reference
     assert empty.data.filepath.endswith("new_1001.png") and empty.image_user.frame_start == -1
     assert away(pixels(addon, ob)[1], before) < 0.5
@@ -367,7 +369,7 @@ def test_another_object_with_the_footage_is_named(addon, film, delivered):
     other = film.copy()
     other.data, other.name = film.data.copy(), "other"
     bpy.context.scene.collection.objects.link(other)
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert '"other" has the old footage still: conform it too' in said(addon).text
     before = pixels(addon, other)
     moved = addon("scripting").conform(other, delivered)
@@ -390,7 +392,7 @@ def test_paint_and_clicks_go_along(addon, film, delivered):
     bpy.ops.rototoon.paint_bucket(place=(30.0, 35.0))
     bpy.ops.rototoon.fill_drawings()
     before = sheets.read(film, "Paint")
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     after = sheets.read(film, "Paint")
     assert len(before) > 3
     clicks = [content[1].content.strokes(gp.CLICK)[0] for content in (min(before.items()), min(after.items()))]
@@ -409,7 +411,7 @@ def test_colours_that_become_others_go_along(addon, film, delivered):
     for name, first, last in (("Wet", 5, 8), ("Dry", None, 3)):
         wet(name, (0.2, 0.3, 0.1 * first if first else 0.9))
         scripting.recolour(film, old.name, name, first, last)
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     # The picture of frame 7 is gone, so frame 8 moves up.
     assert scripting.recolours(film) == [(old.name, "Wet", 5, 7), (old.name, "Dry", None, 3)]
 
@@ -463,7 +465,7 @@ def test_keys_on_two_frames_of_one_picture_join(addon, library, fake, tmp_path):
 
 def test_there_and_back(addon, film, delivered, tmp_path):
     before = pixels(addon, film)
-    bpy.ops.rototoon.conform(filepath=delivered)
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     bpy.ops.rototoon.conform(filepath=str(tmp_path / "frames" / "shot_001.png"))
     settings = film.rototoon
     assert (settings.width, settings.height, settings.first, settings.last) == (*shots.SIZE, 1, 9)
@@ -483,6 +485,6 @@ def test_place_and_scale_may_be_given(addon, film, delivered):
     with pytest.raises(RuntimeError, match="Scale: found 0.005, expected 0 or a number from 0.01"):
         bpy.ops.rototoon.conform(filepath=delivered, scale=0.005)
     assert pixels(addon, film).keys() == before.keys()
-    bpy.ops.rototoon.conform(filepath=delivered, scale=2.0, find_shift=False, shift=(16.0, 16.0))
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert "scaled by 2 and moved by 16.00, 16.00 px" in said(addon).text
     assert away(pixels(addon, film)[8], before[9]) < 0.5
