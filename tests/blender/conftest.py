@@ -54,13 +54,12 @@ def install() -> None:
 
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "every_version: runs whole in each Blender, also in those between the oldest and the newest one")
+    config.addinivalue_line("markers", "every_version: runs in each Blender, also in those before the newest one")
     install()
 
 
 def pytest_collection_modifyitems(config, items):
-    """Of a Blender between the oldest and the newest one, which shares its interfaces with one of them: what calls every operator, and the
-    first test of each other file."""
+    """Of a Blender before the newest one: what calls every operator or depends on the version, and the first test of each other file."""
     if os.environ.get("ROTOTOON_TESTS") != "sample":
         return
     seen, kept, left = set(), [], []

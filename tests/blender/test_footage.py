@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 import shots
 
+pytestmark = pytest.mark.every_version
+
 
 def touch(folder, *names):
     for name in names:

@@ -13,6 +13,8 @@ import tomllib
 
 from conftest import ADDON, MODULE, blender_ext, install
 
+pytestmark = pytest.mark.every_version
+
 
 def test_operators_are_there_and_described():
     names = dir(bpy.ops.rototoon)

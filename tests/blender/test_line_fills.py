@@ -9,6 +9,8 @@ import pytest
 from line_stage import attribute, rendered, said
 from shots import write_png
 
+pytestmark = pytest.mark.every_version
+
 RADIUS = 13.0
 
 

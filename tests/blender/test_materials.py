@@ -4,6 +4,8 @@ import bpy
 import pytest
 from test_strokes import drawing_object
 
+pytestmark = pytest.mark.every_version
+
 
 @pytest.fixture
 def inked(addon):

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.usefixtures("library")
+pytestmark = [pytest.mark.every_version, pytest.mark.usefixtures("library")]
 
 
 def drawing_object(addon, layers=("Lines",), filled=False):

@@ -7,6 +7,8 @@ import studio
 from studio import OPERATORS
 from test_guard import file, opened, prepared, run, said  # noqa: F401 - fixtures of the studio
 
+pytestmark = pytest.mark.every_version
+
 PLAIN = {"STRING", "INT", "FLOAT", "ENUM", "BOOLEAN"}
 
 
