@@ -75,7 +75,7 @@ pub fn stance(clips: &str) -> Result<String, Failure> {
         return Err(Failure::Error(format!("clips: found {} clips, expected one", clips.clips.len())));
     };
     let looks = facing::of_clip(&clip.template, &clip.postures).map(Side::id);
-    let air = Contacts::air(&clip.template, &clip.postures);
+    let air = Contacts::of_clip(&clip.template, &clip.postures).air;
     Ok(json!({"looks": looks, "air": air}).to_string())
 }
 

@@ -1,7 +1,7 @@
 //! `rototoon conform`: moves a document to footage that was delivered again.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, project};
+use crate::{arguments, progress, project, unchanged};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::conform::Given;
 use rototoon::geometry::Point;
@@ -125,5 +125,5 @@ fn save(mut document: Document, to: &Path) -> Result<(), Failure> {
         Ok(found) if !found.is_file() => pipeline::unfold(&mut document, here),
         _ => pipeline::relocate(&mut document, here, &folder_for(to, here)),
     }
-    Ok(document.save(to)?)
+    unchanged::save(&document, to)
 }

@@ -6,7 +6,6 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::file;
 use rototoon::import::ImportError;
 use rototoon::pipeline::{self, PipelineError, ShapeFormat};
-use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
 use std::path::PathBuf;
 
@@ -41,7 +40,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let [from, shapes, to] = ["project", "shapes", "output"].map(|id| arguments::path(given, id));
     let extension = shapes.extension().and_then(|extension| extension.to_str()).unwrap_or("").to_ascii_lowercase();
     // Warnings about this document are not printed, because the import changes it.
-    let mut document = Document::load(from)?;
+    let mut document = project::read(from)?;
     let footage = &document.scene.footage;
     let still = given.get_one::<FrameNumber>("frame").copied().unwrap_or(footage.first);
     if !(footage.first..=footage.last).contains(&still) {

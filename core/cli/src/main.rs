@@ -35,6 +35,7 @@ mod style;
 mod trace;
 mod track;
 mod tween;
+mod unchanged;
 mod usage;
 
 use clap::{ArgMatches, Command};

@@ -1,6 +1,7 @@
 //! Reads and writes the documents that the command names.
 
 use crate::failure::{Failure, line};
+use crate::unchanged;
 use rototoon::pipeline;
 use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::{Document, Inputs};
@@ -21,8 +22,14 @@ pub fn load_either(path: &Path) -> Result<Document, Failure> {
     warned(path, |document| !document.has_drawn())
 }
 
+/// Reads a document without a word.
+pub fn read(path: &Path) -> Result<Document, Failure> {
+    unchanged::remember(path);
+    Ok(Document::load(path)?)
+}
+
 fn warned(path: &Path, needs_part: impl FnOnce(&Document) -> bool) -> Result<Document, Failure> {
-    let document = Document::load(path)?;
+    let document = read(path)?;
     let problems = document.problems();
     let unneeded = document.scene.parts.is_empty() && !needs_part(&document);
     let told = problems.warnings().filter(|warning| !(unneeded && warning.place == "parts"));
@@ -48,7 +55,8 @@ pub fn inputs(document: &Document, from: &Path) -> Inputs {
     Inputs::default().footage(&document.scene.footage, &home(document, from))
 }
 
-/// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files.
+/// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files. What another program wrote to the
+/// file meanwhile is not written over ([`unchanged`]).
 pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failure> {
     let home = home(&document, from);
     match std::fs::metadata(to) {
@@ -56,5 +64,5 @@ pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failur
         Ok(found) if !found.is_file() => pipeline::unfold(&mut document, &home),
         _ => pipeline::relocate(&mut document, &home, &folder_for(to, &home)),
     }
-    Ok(document.save(to)?)
+    unchanged::save(&document, to)
 }

@@ -30,7 +30,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::snap(&mut document, &home, &options, bar)?;
         Ok(document)
     })?;
-    if let Some(warning) = pipeline::outdated(&document.scene) {
+    let scene = &document.scene;
+    for warning in [pipeline::untracked(scene), pipeline::outdated(scene)].into_iter().flatten() {
         line("warning", &format!("{}: {warning}", from.display()));
     }
     project::save(document, from, to)

@@ -65,7 +65,7 @@ fn of_movement() -> [Arg; 4] {
 /// Runs the subcommand.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
-    let mut document = rototoon::project::Document::load(from)?;
+    let mut document = project::read(from)?;
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;

@@ -57,7 +57,7 @@ impl Contacts {
     /// Finds the contacts of a clip on ones. `legs` are the key points of each leg, the last its foot. Without legs the figure
     /// is never on the ground.
     pub fn of(legs: &[&[usize]], clip: &[Vec<Point>]) -> Self {
-        Self::at(legs, clip, (0..clip.len()).map(|t| t as f64).collect())
+        Self::at(legs, clip, every_frame(clip))
     }
 
     /// Finds the contacts of postures at these times, in frames.
@@ -96,12 +96,13 @@ impl Contacts {
         Self { stands: stands.collect(), air, ground, way, times }
     }
 
-    /// On which frames the figure of a clip is in the air. A clip on twos is looked at drawing by drawing.
-    pub fn air(template: &Template, clip: &[Vec<Point>]) -> Vec<bool> {
-        match Holds::of(template, clip) {
-            None => Self::of(&template.legs(), clip).air,
-            Some(holds) => holds.held(&Self::at(&template.legs(), &holds.drawings(clip), holds.times()).air),
-        }
+    /// Finds the contacts of a clip, on each of its frames. A clip on twos is looked at drawing by drawing.
+    pub fn of_clip(template: &Template, clip: &[Vec<Point>]) -> Self {
+        let legs = template.legs();
+        let Some(holds) = Holds::of(template, clip) else { return Self::of(&legs, clip) };
+        let found = Self::at(&legs, &holds.drawings(clip), holds.times());
+        let stands = found.stands.iter().map(|foot| holds.held(foot)).collect();
+        Self { stands, air: holds.held(&found.air), times: every_frame(clip), ..found }
     }
 
     /// The runs of frames during which a foot stands.
@@ -115,6 +116,11 @@ impl Contacts {
         }
         found
     }
+}
+
+/// The times of a clip on ones.
+pub(crate) fn every_frame(clip: &[Vec<Point>]) -> Vec<f64> {
+    (0..clip.len()).map(|t| t as f64).collect()
 }
 
 /// The length of a straight leg: the median over the frames, of the longest leg.
@@ -233,7 +239,7 @@ pub(crate) mod tests {
             assert_eq!(found.stands, human(&ones).stands, "{count} {way}");
             assert!((found.ground - human(&ones).ground).abs() < 1e-9);
         }
-        let air = Contacts::air(&Template::human(), &walk(48, true));
+        let air = Contacts::of_clip(&Template::human(), &walk(48, true)).air;
         assert_eq!(air, human(&walk(48, true)).air);
     }
 

@@ -26,7 +26,7 @@
 //!
 //! Limits: the ground is a level line. A leg that would have to be longer stays straight and hangs above the ground.
 
-use super::contacts::{Contacts, quantile};
+use super::contacts::{Contacts, every_frame, quantile};
 use super::cycle::Cycle;
 use super::foot::{Foot, foot_of};
 use super::pitch::{FADE, pitches};
@@ -88,11 +88,6 @@ pub fn stand(
     let turns = stand_at(template, &mut made, (&drawings, size), (feet, ground), holds.times());
     postures.clone_from_slice(&holds.postures(&before, &made));
     turns.iter().map(|turns| holds.held(turns)).collect()
-}
-
-/// The times of a clip on ones.
-fn every_frame(clip: &[Vec<Point>]) -> Vec<f64> {
-    (0..clip.len()).map(|t| t as f64).collect()
 }
 
 /// [`stand`] of postures at these times.

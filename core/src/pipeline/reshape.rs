@@ -13,12 +13,14 @@
 //! - `store`: the result in the document
 //! - `kept`: what the artist corrected on an earlier result
 //! - `sunk`: parts that go through the ground
+//! - `hover`: feet that never reach it
 //! - `told`: what is said about the result
 //! - `rate`: the clip at the document's frame rate
 
 mod bodies;
 mod depths;
 mod feet;
+mod hover;
 mod kept;
 mod lines;
 mod loose;
@@ -118,7 +120,7 @@ pub struct Reshaped {
     /// The sides to which drawing and clip look, where they decided whether the clip was mirrored. None if the job said it, and for
     /// a motion of the drawing itself.
     pub sides: Option<Sides>,
-    /// What a person should know beside, in words: parts that go through the ground, strokes that lie on no part.
+    /// What a person should know beside, in words: parts that go through the ground, feet that never reach it, strokes that lie on no part.
     pub notes: Vec<String>,
     /// What a person may like to know, in words: what a shot's own motion had and this one has not.
     pub remarks: Vec<String>,

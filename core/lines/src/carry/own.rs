@@ -358,13 +358,14 @@ mod tests {
 
     #[test]
     fn of_two_stretches_of_one_line_a_stroke_keeps_the_longer_one() {
-        // It lies on both ends of the upper line. Between them is another stroke that the artist drew.
-        let strayed = line(5, &[(11.0, 30.5), (50.0, 30.5), (50.0, 40.5), (90.0, 40.5), (90.0, 30.5), (108.0, 30.5)]);
+        // It lies on both ends of the upper line, but would be drawn from the right one to the left one. Between them is a stroke of the artist.
+        let places = [(90.0, 30.5), (108.0, 30.5), (108.0, 50.5), (11.0, 50.5), (11.0, 30.5), (50.0, 30.5)];
+        let strayed = line(5, &places);
         let mut strokes = vec![line(4, &[(50.0, 30.5), (90.0, 30.5)]), strayed];
         let mut shown = Shown::default();
         shown.learn_drawn([4]);
         let found = shown.traced(&mut strokes, &drawing(), &mut 9);
-        assert_eq!(told(&found), [(31, 4, 5, 9), (31, 5, 1, 5), (31, 9, 9, 11), (71, 10, 1, 11)]);
+        assert_eq!(told(&found), [(30, 10, 9, 11), (31, 4, 5, 9), (31, 5, 1, 5), (71, 9, 1, 11)]);
     }
 
     #[test]

@@ -225,6 +225,51 @@ fn a_human_walk_makes_an_animal_walk_by_named_chains() {
     }
 }
 
+/// A dog with short hind legs, which stands on all paws with its back aslant.
+fn low_behind(template: &Template) -> Vec<Point> {
+    let mut dog = walk(template, 60.0, 1.0).remove(0);
+    let at = |name: &str| template.index(name).unwrap();
+    for side in ["l", "r"] {
+        let hip = dog[at(&format!("{side}_hip"))];
+        for name in ["knee", "hock", "hindpaw"] {
+            let k = at(&format!("{side}_{name}"));
+            dog[k] = hip + (dog[k] - hip) * 0.7;
+        }
+    }
+    let low = |dog: &[Point], paw: &str| dog[at(&format!("l_{paw}"))].y.max(dog[at(&format!("r_{paw}"))].y);
+    for _ in 0..60 {
+        let gap = low(&dog, "forepaw") - low(&dog, "hindpaw");
+        let angle = -gap / 200.0;
+        let pelvis = dog[0];
+        dog.iter_mut().for_each(|p| *p = pelvis + Point::from_angle(angle).rotate(*p - pelvis));
+        let legs = ["l_shoulder", "r_shoulder", "l_hip", "r_hip"];
+        legs.into_iter().for_each(|leg| turn(template, &mut dog, leg, -angle));
+    }
+    dog
+}
+
+#[test]
+fn paws_that_hang_in_the_air_under_a_walk_are_named() {
+    let quadruped = Template::quadruped();
+    let clip = super::walkers::others_walk();
+    let dog = still(&quadruped, &DOG, &[low_behind(&quadruped)]);
+    let low = |points: &[Point]| points.iter().map(|p| p.y).fold(f64::MIN, f64::max);
+    let ground = dog.scene.parts.iter().map(|part| low(&part.keys[&0])).fold(f64::MIN, f64::max);
+    let (made, report) = on(&dog, &clip, &[]);
+    let above = |name: &str| {
+        let part = made.scene.parts.iter().find(|part| part.name == name).unwrap();
+        ground - part.tracks.values().map(|points| low(points)).fold(f64::MIN, f64::max)
+    };
+    assert!(above("far hind") > 10.0 && above("near fore") < 1.0);
+    // The drawing does not stand on the near hind paw.
+    let notes: Vec<&String> = report.notes.iter().filter(|note| note.contains("above the ground")).collect();
+    let said = format!("part \"far hind\": at least {:.0} px above the ground on every frame", above("far hind"));
+    assert_eq!(notes, [&said]);
+    let level = still(&quadruped, &DOG, &walk(&quadruped, 60.0, 1.0));
+    let (_, report) = on(&level, &clip, &[("l_arm", "l_foreleg"), ("r_arm", "r_foreleg")]);
+    assert!(!report.notes.iter().any(|note| note.contains("above the ground")), "{:?}", report.notes);
+}
+
 #[test]
 fn a_human_walk_to_the_left_moves_an_animal_to_where_it_looks() {
     let human = Template::human();

@@ -10,6 +10,7 @@
 //! the others.
 
 use super::feet::{Feet, FootLimb, feet, ground};
+use super::hover::all_stand;
 use super::moves::{Moves, moves};
 use super::{PipelineError, ReshapeJob, Sides, wrong};
 use crate::geometry::Point;
@@ -52,6 +53,8 @@ pub(super) struct Motion {
     pub own: bool,
     /// The feet.
     pub feet: Vec<FootLimb>,
+    /// Whether every foot of the clip's figure stands on some frame.
+    pub all_stand: bool,
     /// Chains of the drawing's skeleton that no chain of the clip moves.
     pub still: Vec<String>,
     /// Whether the clip was mirrored.
@@ -108,6 +111,7 @@ pub(super) fn of(
         ground,
         own,
         feet: feet.feet,
+        all_stand: all_stand(job.clip),
         still: moves.still,
         mirrored: moves.mirrored,
         sides: moves.sides,

@@ -3,7 +3,7 @@
 use super::bodies::{Body, Moved};
 use super::lines::LooseLine;
 use super::motion::Motion;
-use super::{Given, Reshaped, sunk};
+use super::{Given, Reshaped, hover, sunk};
 use crate::geometry::Point;
 use crate::pipeline::report::runs;
 use crate::scene::{FrameNumber, Part};
@@ -27,6 +27,7 @@ pub(super) fn report(
         (body.name.clone(), moved.frames.iter().map(tail).collect())
     });
     let mut notes = sunk::notes((bodies, moved), parts, motion, first);
+    notes.extend(hover::notes((bodies, moved), motion));
     notes.extend(of_strokes(&strokes));
     Reshaped {
         given: given.chain(lines).collect(),

@@ -154,7 +154,7 @@ fn one_drawing_of_a_walk_stands_on_its_ground_by_the_whole_walk() {
 }
 
 /// The walk of a figure with other proportions, so that it is no motion of the drawing.
-fn others_walk() -> Clip {
+pub(super) fn others_walk() -> Clip {
     let mut clip = own_clip(&drawn(&walk(), true));
     for posture in &mut clip.postures {
         for k in 1..5 {

@@ -281,6 +281,7 @@ impl Rototoon {
         let spans: BTreeSet<Span> = new.map(|task| task.span).collect();
         let numbers: BTreeSet<FrameNumber> = spans.iter().flat_map(Span::frames).collect();
         let first = Portion { listener: progress, range: [0.0, FEATURES] };
+        kit.plain.0.expect(numbers.len());
         kit.store.read(kit.frames, &Vec::from_iter(numbers), &first)?;
         let mut pairs = BTreeSet::new();
         for span in spans {

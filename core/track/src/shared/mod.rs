@@ -5,6 +5,7 @@
 //! - [`look`]: what is compared, by the kind of drawing
 //! - [`sought`]: a picture made ready to be searched
 //! - [`store`]: features, flows and the like, kept for the next job
+//! - [`budget`]: how many bytes of them
 //! - [`drawings`]: frames that show one drawing are worked on once
 //! - [`held`]: whether two pictures show the same drawing, or only noise tells them apart
 //! - [`cuts`]: where the footage goes over to another shot
@@ -14,6 +15,7 @@
 //! - [`part_by_part`]: order and memory of jobs that are solved one by one
 //! - [`weakest`]: where the next key helps most
 
+pub mod budget;
 pub mod cuts;
 pub mod drawings;
 pub mod edge_maps;

@@ -1,9 +1,10 @@
-//! A store of data computed from pictures, kept for the next job within a budget of bytes.
+//! A store of data computed from pictures, kept for the next job within a [budget](super::budget) of bytes.
 //!
 //! Features and flows depend on the pictures alone, so the store never changes a result. Values are computed without
 //! holding the lock. Features are computed by many threads together, so two callers may compute the same ones.
 //! [`Store::read`] computes those of a complete scene before they are requested.
 
+use super::budget::Budget;
 use super::features::Features;
 use super::held::same_drawing;
 use super::sought::Sought;
@@ -14,9 +15,6 @@ use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
 use rototoon_image::flow::{Flow, Pyramid, dense_flow};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-
-/// Largest number of bytes kept: the features of about a hundred frames of 16:9.
-const BUDGET: usize = 400 << 20;
 
 /// Index in `LEVELS` of the level on whose luma the flow is computed. The flow has the resolution of this level.
 pub const FLOW_LEVEL: usize = 1;
@@ -32,6 +30,7 @@ pub struct Store {
 struct Kept {
     clock: u64,
     bytes: usize,
+    budget: Budget,
     entries: BTreeMap<Key, Entry>,
     making: BTreeSet<Key>,
 }
@@ -90,8 +89,17 @@ impl Store {
             return Ok(known);
         }
         let made = Arc::new(Features::new(&*frames.picture(frame)?));
+        let mut kept = self.lock();
+        kept.budget = kept.budget.with_features(made.bytes());
+        drop(kept);
         self.put(key, made.bytes(), Value::Features(made.clone()));
         Ok(made)
+    }
+
+    /// Makes room for a scene of so many frames.
+    pub fn expect(&self, frames: usize) {
+        let mut kept = self.lock();
+        kept.budget = kept.budget.raised(frames);
     }
 
     /// Computes the features of several frames, each once, as far as they fit into half of the budget.
@@ -102,8 +110,9 @@ impl Store {
         progress: &dyn Progress,
     ) -> Result<(), TrackError> {
         let Some((first, rest)) = numbers.split_first() else { return Ok(()) };
+        self.expect(numbers.len());
         let one = self.features(frames, *first)?.bytes();
-        let most = BUDGET / 2 / one.max(1);
+        let most = self.lock().budget.bytes() / 2 / one.max(1);
         let rest = &rest[..rest.len().min(most)];
         let steps = Steps::new(progress, "Reading frames", rest.len());
         rest.par_iter().with_max_len(1).try_for_each(|&frame| steps.step(|| self.features(frames, frame).map(|_| ())))
@@ -246,7 +255,7 @@ impl Store {
         if let Some(old) = kept.entries.insert(key, entry) {
             kept.bytes -= old.bytes;
         }
-        while kept.bytes > BUDGET {
+        while kept.bytes > kept.budget.bytes() {
             let Some((&oldest, _)) = kept.entries.iter().min_by_key(|(_, entry)| entry.used) else { break };
             if let Some(entry) = kept.entries.remove(&oldest) {
                 kept.bytes -= entry.bytes;
