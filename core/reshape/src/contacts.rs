@@ -105,6 +105,11 @@ impl Contacts {
         Self { stands, air: holds.held(&found.air), times: every_frame(clip), ..found }
     }
 
+    /// Whether every foot stands on some frame. Not of a body without legs.
+    pub fn all_stand(&self) -> bool {
+        !self.stands.is_empty() && self.stands.iter().all(|foot| foot.contains(&true))
+    }
+
     /// The runs of frames during which a foot stands.
     pub fn runs(&self, foot: usize) -> Vec<std::ops::Range<usize>> {
         let mut found: Vec<std::ops::Range<usize>> = Vec::new();
@@ -241,6 +246,7 @@ pub(crate) mod tests {
         }
         let air = Contacts::of_clip(&Template::human(), &walk(48, true)).air;
         assert_eq!(air, human(&walk(48, true)).air);
+        assert!(human(&walk(48, true)).all_stand() && !human(&[]).all_stand());
     }
 
     #[test]

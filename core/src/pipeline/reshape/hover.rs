@@ -13,17 +13,9 @@ use super::bodies::{Body, Moved};
 use super::feet::FootLimb;
 use super::motion::Motion;
 use crate::geometry::Point;
-use crate::reshape::contacts::Contacts;
-use crate::scene::Clip;
 
 /// A foot is on the ground if it is above it by no more than this share of the torso.
 const ABOVE: f64 = 0.05;
-
-/// Whether every foot of a clip's figure stands on some frame.
-pub(super) fn all_stand(clip: &Clip) -> bool {
-    let stands = Contacts::of_clip(&clip.template, &clip.postures).stands;
-    !stands.is_empty() && stands.iter().all(|foot| foot.contains(&true))
-}
 
 /// What is to be said about the feet.
 pub(super) fn notes((bodies, moved): (&[Body], &[Moved]), motion: &Motion) -> Vec<String> {

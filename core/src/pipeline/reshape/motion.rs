@@ -10,11 +10,11 @@
 //! the others.
 
 use super::feet::{Feet, FootLimb, feet, ground};
-use super::hover::all_stand;
 use super::moves::{Moves, moves};
 use super::{PipelineError, ReshapeJob, Sides, wrong};
 use crate::geometry::Point;
 use crate::reshape::capture::{Bindings, capture};
+use crate::reshape::contacts::Contacts;
 use crate::reshape::fit::{Shown, fit};
 use crate::reshape::foot::Foot;
 use crate::reshape::limb::{Bend, bend_at};
@@ -111,7 +111,7 @@ pub(super) fn of(
         ground,
         own,
         feet: feet.feet,
-        all_stand: all_stand(job.clip),
+        all_stand: Contacts::of_clip(&job.clip.template, &job.clip.postures).all_stand(),
         still: moves.still,
         mirrored: moves.mirrored,
         sides: moves.sides,
