@@ -151,16 +151,22 @@ MOST_UP = 3
 """Greatest number of folders up in a relative path."""
 
 
+def _near(pattern: str, folder: str) -> str:
+    """A pattern relative to a folder, or the absolute one if it is far away."""
+    try:
+        near = os.path.relpath(pattern, os.path.abspath(folder))
+    except ValueError:
+        # Two drives of Windows.
+        return pattern
+    return near.replace(os.sep, "/") if near.count("..") <= MOST_UP else pattern
+
+
 def text(folder: str, document: Mapping[str, Any]) -> str:
     """The text of a document that will be in a folder. If the footage is at most three folders up from there, its path is relative."""
     shot = dict(document["footage"])
-    try:
-        near = os.path.relpath(shot["pattern"], os.path.abspath(folder))
-    except ValueError:
-        # Two drives of Windows.
-        near = ""
-    if near and near.count("..") <= MOST_UP:
-        shot["pattern"] = near.replace(os.sep, "/")
+    # A relative pattern starts in the document's folder already.
+    if os.path.isabs(shot["pattern"]):
+        shot["pattern"] = _near(shot["pattern"], folder)
     return json.dumps({**document, "footage": shot}, allow_nan=False, separators=(",", ":")) + "\n"
 
 

@@ -40,7 +40,10 @@ def exported(path, **how):
     return json.loads(path.read_text())
 
 
-def test_drawings_without_footage_are_in_pixels_of_the_camera(addon, tmp_path):
+def test_drawings_without_footage_are_in_pixels_of_the_camera(addon, tmp_path, monkeypatch):
+    # The pattern does not depend on the current folder.
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
     scene()
     drawn(addon)
     found = exported(tmp_path / "none.json")
