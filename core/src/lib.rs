@@ -77,7 +77,7 @@
 
 pub mod pipeline;
 
-pub use rototoon_base::{curve, file, geometry, memory, numeric, scene};
+pub use rototoon_base::{curve, file, geometry, limits, memory, numeric, scene};
 pub use rototoon_conform as conform;
 pub use rototoon_document as project;
 pub use rototoon_exchange::{export, import};

@@ -2,7 +2,7 @@
 //!
 //! Cargo holds the arrows between the crates. Within a crate this test holds them:
 //!
-//! - `core/base`: `numeric ← geometry ← {curve, scene}`; `file` and `memory` use none of them.
+//! - `core/base`: `numeric ← geometry ← {curve, scene}`; `file`, `limits` and `memory` use none of them.
 //! - `core/track`: `contract ← shared ← {zhou2011, rotoscope, rototoon} ← tracker`. The presets do not use each other.
 //! - In every crate: no import cycle joins files of different folders, or more than two files of one folder.
 //!
@@ -19,8 +19,9 @@ use std::path::{Path, PathBuf};
 /// The modules at the top of a crate, each with those that it may use.
 type Layers<'a> = [(&'a str, &'a [&'a str])];
 
-const BASE: [(&str, &[&str]); 6] = [
+const BASE: [(&str, &[&str]); 7] = [
     ("file", &[]),
+    ("limits", &[]),
     ("memory", &[]),
     ("numeric", &[]),
     ("geometry", &["numeric"]),

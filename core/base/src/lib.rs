@@ -1,10 +1,11 @@
 //! The numerics, plane geometry, spline curves and common types on which all stages of Rototoon are built.
 //!
-//! This crate computes with numbers, points and curves. It reads no files and does not process pictures: decoding and
+//! This crate computes with numbers, points and curves, and says what the machine has to offer. It does not process pictures: decoding and
 //! filters are in `rototoon-image`, the project document is in `rototoon-document`.
 //!
 //! # Modules, from the bottom up
 //!
+//! - [`mod@file`], [`memory`], [`limits`]: reading within bounds, whether memory can be had, and how much is free
 //! - [`numeric`]: numerical methods that know nothing of pictures or contours
 //! - [`geometry`]: points, polylines, polygons, similarities
 //! - [`curve`]: quadratic B-splines
@@ -40,6 +41,7 @@
 pub mod curve;
 pub mod file;
 pub mod geometry;
+pub mod limits;
 pub mod memory;
 pub mod numeric;
 pub mod scene;

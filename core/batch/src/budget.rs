@@ -40,8 +40,8 @@
 //! Decoded frames are kept from one step of a shot to the next as far as its part of the budget has room for them
 //! beside the steps.
 
-use crate::limits;
 use rototoon::geometry::polygon::signed_area;
+use rototoon::limits;
 use rototoon::pictures::decode::kept_size;
 use rototoon::pictures::sequence::KEPT_BYTES;
 use rototoon::scene::{Colour, Footage, FramePattern, Part, Scene};

@@ -16,7 +16,6 @@
 //! - [`answer`]: what the two say to each other
 //! - [`shot`]: all steps of a shot
 //! - [`budget`]: how many shots fit into the memory
-//! - [`limits`]: the memory of the machine and of containers
 //! - [`peak`]: the most memory that a process has held
 //! - [`findings`]: confidence, lost parts and the keys that would help most
 //! - [`report`]: JSON lines while it runs
@@ -40,7 +39,6 @@ pub mod child;
 pub mod digest;
 pub mod findings;
 pub mod jobs;
-pub mod limits;
 pub mod lock;
 pub mod manifest;
 pub mod names;

@@ -42,7 +42,7 @@ pub fn save(document: &Document, to: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let beside = beside(to)?;
-    document.save(&beside)?;
+    document.save(&beside).inspect_err(|_| drop(fs::remove_file(&beside)))?;
     let (to, beside) = (to.display(), beside.display());
     Err(Failure::Other(format!(
         "{to}: found another content than this command read, so another program wrote the file meanwhile; it stays as it is, and the result is in {beside}"

@@ -4,11 +4,10 @@
 //! scene a little larger than the store, that is everything: the frame that is needed next is always the one that was not used for the longest time. 97
 //! frames of 1920 × 1080 with eleven parts took 444 s of processor time in place of 112 s. So the budget grows with the scene.
 //!
-//! It is bounded by a quarter of the memory that is free. Linux says how much that is, and so does the control group of a container; elsewhere the bound is
+//! It is bounded by a quarter of the memory that is free. Where the system does not say how much that is ([`limits`]), the bound is
 //! fixed. A scene that is larger than its budget takes longer, and its result is the same.
 
-use std::fs;
-use std::path::Path;
+use rototoon_base::limits;
 
 /// Bytes kept at least, however small a scene is.
 const LEAST: usize = 400 << 20;
@@ -32,7 +31,7 @@ pub struct Budget {
 impl Budget {
     /// For a scene of at least so many frames.
     pub fn raised(self, frames: usize) -> Self {
-        Self { frames: self.frames.max(frames), most: most(free()), ..self }
+        Self { frames: self.frames.max(frames), most: most(limits::free()), ..self }
     }
 
     /// For features of so many bytes.
@@ -51,21 +50,6 @@ fn most(free: Option<u64>) -> usize {
     free.map_or(UNKNOWN, |free| ((free as f64 * SHARE) as usize).min(MOST))
 }
 
-/// Free memory in bytes: the system's, or if that is less the rest of what the control group allows.
-fn free() -> Option<u64> {
-    let read = |path: &str| fs::read_to_string(Path::new(path)).ok();
-    let group = |name: &str| read(&format!("/sys/fs/cgroup/memory.{name}"))?.trim().parse::<u64>().ok();
-    let left = group("max").zip(group("current")).map(|(most, used)| most.saturating_sub(used));
-    let system = available(&read("/proc/meminfo")?)?;
-    Some(left.map_or(system, |left| left.min(system)))
-}
-
-/// The bytes that the text of `/proc/meminfo` says can be had without swapping.
-fn available(text: &str) -> Option<u64> {
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,15 +66,5 @@ mod tests {
         assert_eq!(budget(usize::MAX, None), UNKNOWN);
         let raised = Budget::default().with_features(5).raised(7).raised(3);
         assert_eq!((raised.frames, raised.features), (7, 5));
-    }
-
-    #[test]
-    fn free_memory_is_read_from_the_system_s_text() {
-        let text = "MemTotal:       24689820 kB\nMemFree:        20123 kB\nMemAvailable:   23000000 kB\n";
-        assert_eq!(available(text), Some(23_000_000 * 1024));
-        assert_eq!(available("MemTotal: 1 kB\n"), None);
-        assert_eq!(available("MemAvailable: many kB"), None);
-        #[cfg(target_os = "linux")]
-        assert!(free().is_some());
     }
 }
