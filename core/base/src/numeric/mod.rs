@@ -7,6 +7,7 @@
 //! - [`dense`]: small dense positive definite systems
 //! - [`gradient_check`]: compares an analytic Jacobian with central differences
 //! - [`lanes`]: arithmetic on eight values at once
+//! - [`median`](mod@median): the middle of a list
 //! - [`normal_equations`]: JᵀJ and Jᵀr of a sparse Jacobian of fixed pattern
 //! - [`roots`]: real roots of polynomials up to the quartic
 //! - [`sparse_assignment`]: assignment where each row may take few columns, or none
@@ -21,6 +22,7 @@ pub mod damped_system;
 pub mod dense;
 pub mod gradient_check;
 pub mod lanes;
+pub mod median;
 pub mod normal_equations;
 pub mod roots;
 pub mod sparse_assignment;

@@ -7,6 +7,7 @@
 use super::skeleton::LIMBS;
 use super::template::Template;
 use crate::geometry::Point;
+use crate::numeric::median::median;
 
 /// Limbs shorter than this share of the torso have no direction along which to scale them.
 const NO_LENGTH: f64 = 1e-6;
@@ -55,13 +56,6 @@ pub fn typical_torso(template: &Template, postures: &[Vec<Point>]) -> f64 {
     median(postures.iter().map(|posture| template.torso_length(posture)).collect())
 }
 
-/// The median; 0 for an empty list.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n == 0 { 0.0 } else { 0.5 * (values[(n - 1) / 2] + values[n / 2]) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,9 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn the_median_is_the_middle() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), 2.5);
+    fn no_postures_have_no_torso() {
         assert_eq!(typical_torso(&Template::human(), &[]), 0.0);
     }
 }

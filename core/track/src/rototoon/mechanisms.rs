@@ -53,11 +53,13 @@ pub enum Mechanism {
     Holds,
     /// Parts without corrections keep their tracks, unless corrections of other parts make them clearly surer.
     Untouched,
+    /// Parts that are alike and meet twice between two keys may have changed places, and are doubted.
+    Exchanges,
 }
 
 impl Mechanism {
     /// Every mechanism with its id on the command line of the benchmark.
-    pub const ALL: [(Self, &str); 22] = [
+    pub const ALL: [(Self, &str); 23] = [
         (Self::Looks, "looks"),
         (Self::Flow, "flow"),
         (Self::Search, "search"),
@@ -80,6 +82,7 @@ impl Mechanism {
         (Self::Branches, "branches"),
         (Self::Holds, "holds"),
         (Self::Untouched, "untouched"),
+        (Self::Exchanges, "exchanges"),
     ];
 
     /// The mechanism with an id. `None` if there is no such mechanism.

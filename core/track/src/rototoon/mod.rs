@@ -22,6 +22,7 @@
 //! 6. **Outward.** Parts with a single key are followed from it, after all others ([`outward`]).
 //!
 //! 7. **Holds.** Frames that show one drawing of a part over a background that moves take one contour ([`holds`]).
+//! 8. **Exchanges.** Parts that look alike and may have changed places are doubted ([`exchange`](mod@exchange)).
 //!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
 //! change the pools of other parts. Stretches without a change keep their choices ([`chosen`]), and drawings without one what
@@ -40,6 +41,7 @@ pub mod confidence;
 mod corrected;
 mod corrective;
 pub mod evidence;
+mod exchange;
 mod figures;
 mod finer;
 mod finish;
@@ -153,6 +155,9 @@ impl SceneSolver for Rototoon {
         }
         if self.mechanisms.has(Mechanism::Holds) {
             self.holds = holds::unite(self.kit(&looks, progress), scene, &mut tracking, &self.holds)?;
+        }
+        if self.mechanisms.has(Mechanism::Exchanges) {
+            exchange::doubt(self.kit(&looks, progress), scene, &mut tracking)?;
         }
         twins::doubt(scene, &mut tracking.parts);
         Ok(tracking)

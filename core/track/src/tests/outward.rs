@@ -107,6 +107,20 @@ fn a_part_that_leaves_the_picture_needs_no_key() {
 }
 
 #[test]
+fn a_part_that_left_the_picture_is_not_what_comes_into_it() {
+    fn coming(t: f64) -> (Point, f64) {
+        (if t < 3.0 { Point::splat(-100.0) } else { Point::new(60.0, 90.0) }, 0.0)
+    }
+    let rest = leaving().0[0].rest.clone();
+    let ball = |motion: fn(f64) -> (Point, f64)| Shape { rest: rest.clone(), colour: [0.2, 0.4, 0.8], motion };
+    let drawn = Drawn(vec![ball(|t| (Point::new(150.0 + 22.0 * t, 90.0), 0.0)), ball(coming)]);
+    let found = &track(&drawn, &drawn.scene(vec![single(&drawn.0[0], "ball", 0.0, 0)])).parts[0];
+    let near = |points: &[Point]| polygon::center(points).distance(Point::new(60.0, 90.0)) < 20.0;
+    assert!(!found.tracks.values().any(|points| near(points)), "{:?}", found.tracks);
+    assert!(found.ends.iter().all(|end| end.reason == Ending::Left) && found.ends.len() == 1, "{:?}", found.ends);
+}
+
+#[test]
 fn pins_and_centers_extend_trust_and_are_exact() {
     let drawn = limb_and_ball();
     let gone = Changed { drawn: &drawn, from: 4, instead: paper };

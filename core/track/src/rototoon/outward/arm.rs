@@ -147,6 +147,10 @@ impl Arm {
             (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
             growing.drawings.push(seen);
             let now = growing.judge();
+            if !must && doubtful == 0 && growing.was_leaving() && growing.leapt() {
+                beyond = growing.taken_back().map(|frame| (frame, Ending::Left));
+                break;
+            }
             let left = now.inside < LEAST_INSIDE && doubtful == 0 && growing.was_leaving();
             doubtful = if now.trusted() { 0 } else { doubtful + 1 };
             if !must && (left || doubtful >= PATIENCE) {
@@ -373,6 +377,24 @@ impl Growing<'_> {
         let earlier = points(before.saturating_sub(1));
         let moved = points(before).iter().zip(earlier).map(|(p, q)| *p * 2.0 - *q);
         points(before).iter().copied().chain(moved).any(|p| !in_picture(p, self.ground.width))
+    }
+
+    /// Whether the part is more than its size from where its last motion would take it. A part that was about to leave the picture has
+    /// left it then, and what was found is something else.
+    fn leapt(&self) -> bool {
+        let Some(before) = self.drawings.len().checked_sub(2) else { return false };
+        let center = |d: usize| polygon::center(&self.drawings[d].pool[self.path[d]].points);
+        let expected = center(before) * 2.0 - center(before.saturating_sub(1));
+        let (last, size) = (center(before + 1), self.ground.model.texture.mesh.size);
+        let far = last.distance(expected).min(last.distance(center(before))) > size;
+        far && !self.drawings[before + 1].after_gap
+    }
+
+    /// Forgets the last drawing. Returns its frame.
+    fn taken_back(&mut self) -> Option<FrameNumber> {
+        self.path.pop();
+        self.sure.pop();
+        self.drawings.pop().map(|seen| seen.near)
     }
 
     fn best(&self, from: usize) -> Vec<usize> {

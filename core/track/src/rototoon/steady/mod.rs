@@ -16,7 +16,9 @@
 //!
 //! If all points of a part have independent noise, its centre and its pose times its size have the same noise. So the
 //! noise of poses is taken for that of centres too. Keys and corrected drawings stay. A contour moves by at most [`FARTHEST`].
-//! Noise is measured where each part alone would go without corrections, so it does not depend on them.
+//! Noise is measured where each part alone would go without corrections, so it does not depend on them. It is one for the whole
+//! film, and a key that changes in one span changes it a little. So it is counted in steps: most often the other spans keep their
+//! contours to the last digit.
 //!
 //! Below the least [`WOBBLE`] a film is clean, and above the largest its drawings jump: then nothing is changed at all. Six films
 //! in pencil and double lines have a noise of 0.15 to 0.6 square pixels, fifteen clean and shaded ones at most 0.14, twelve of
@@ -73,6 +75,7 @@ pub struct Wobble {
     shape: Split,
     /// Motion of parts of one body against each other: of their centres and of their poses.
     pairs: [Pairs; 2],
+    steadies: bool,
 }
 
 impl Wobble {
@@ -94,18 +97,18 @@ impl Wobble {
         }
         let (mut pose, shape) = (pose.split(), shape.split());
         pose.noise = pose.noise.min(OF_SHAPE * shape.noise);
-        Self { pose, shape, pairs }
+        let steadies = is_wobble(pose, shape);
+        Self { pose: pose.in_steps(), shape: shape.in_steps(), pairs, steadies }
     }
 
     /// Whether contours are changed at all.
     pub fn steadies(&self) -> bool {
-        let Split { noise, motion } = self.shape;
-        noise >= WOBBLE.0.max(OF_MOTION * motion) && noise.max(self.pose.noise) <= WOBBLE.1
+        self.steadies
     }
 
     /// The control points of the parts of one stretch of time on each of their drawings, steadied.
     pub fn steadied(&self, group: &[Member]) -> Vec<Vec<Vec<Point>>> {
-        if !self.steadies() {
+        if !self.steadies {
             return group.iter().map(|member| member.points.clone()).collect();
         }
         let motions: Vec<Motion> = group.iter().map(|member| Motion::of(&member.times, &member.points)).collect();
@@ -130,6 +133,11 @@ impl Wobble {
         );
         member.points.iter().zip(new).zip(&member.set).map(|((old, new), &set)| within_reach(old, new, set)).collect()
     }
+}
+
+/// Whether noise and motion of poses and shapes are those of a film that wobbles.
+fn is_wobble(pose: Split, shape: Split) -> bool {
+    shape.noise >= WOBBLE.0.max(OF_MOTION * shape.motion) && shape.noise.max(pose.noise) <= WOBBLE.1
 }
 
 fn centres(motions: &[Motion]) -> Series {

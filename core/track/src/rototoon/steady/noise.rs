@@ -19,6 +19,14 @@ pub struct Split {
     pub motion: f64,
 }
 
+impl Split {
+    /// Both variances, rounded to powers of two.
+    pub fn in_steps(self) -> Self {
+        let rounded = |x: f64| if x > 0.0 { 2f64.powi(x.log2().round() as i32) } else { x };
+        Self { noise: rounded(self.noise), motion: rounded(self.motion) }
+    }
+}
+
 /// Second differences of many series.
 #[derive(Clone, Debug, Default)]
 pub struct Differences {
@@ -125,6 +133,15 @@ mod tests {
         let line: Vec<Vec<f64>> = times.iter().map(|t| vec![2.0 * t - 1.0, -t]).collect();
         assert!(second_differences(&times, &line).iter().flatten().all(|x| x.abs() < 1e-12));
         assert_eq!(weights(&[0.0, 1.0, 2.0]), [1.0, -2.0, 1.0]);
+    }
+
+    #[test]
+    fn variances_that_differ_little_are_the_same_step() {
+        let split = |noise, motion| Split { noise, motion }.in_steps();
+        assert_eq!(split(0.5, 2.2), Split { noise: 0.5, motion: 2.0 });
+        assert_eq!(split(0.45, 1.9), split(0.55, 2.1));
+        assert_ne!(split(0.5, 2.0).noise, split(1.0, 2.0).noise);
+        assert_eq!(split(0.0, 0.0), Split::default());
     }
 
     #[test]
