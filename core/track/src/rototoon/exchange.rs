@@ -4,10 +4,9 @@
 //! tracker may take each for the other one in between. Both contours fit their drawings then, move smoothly, and are right at
 //! both keys. So the fit, the margin of the joint choice, and the agreement of the two keys all say that they are sure.
 //!
-//! **How.** Two closed parts are *alike* if their areas, outlines and colours at the keys are nearly the same. They *meet* on a
-//! frame where a share of one's outline is inside the other one. A frame is *known* if one of them has a key or a correction
+//! **How.** A frame is *known* if one of them has a key or a correction
 //! there, or shows a key's drawing. Between two frames that are known one after the other, parts that meet once cannot be exchanged:
-//! each key says which is which on its side. If they meet twice or more, nothing says so between the first time and the last. There the
+//! each key says which is which on its side. If [alike](super::alike) parts meet twice or more, nothing says so between the first time and the last. There the
 //! probability of each point is multiplied by that of no exchange, 1 − [`EXCHANGED`].
 //!
 //! The sign was found on anubis, the boy, the jumping girl, the penguin and the run, each with their own keys and with two to four.
@@ -18,37 +17,22 @@
 //! which. Open lines are not looked at, and parts with one key have a sign of their own
 //! ([`twins`](crate::shared::twins)).
 
+use super::alike::{Look, between_meetings, meet, median_colour};
 use super::confidence::HELD;
 use super::stage::Kit;
 use crate::contract::error::TrackError;
 use crate::contract::tracking::{PartTrack, Tracking};
 use crate::shared::features::{Padded, working_scale};
-use rototoon_base::geometry::{Point, polygon, polyline};
-use rototoon_base::numeric::median::median;
+use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::outcome::mean;
 use rototoon_base::scene::{FrameNumber, Part, Scene};
 use std::collections::BTreeSet;
 
 /// Share of exchanged contours among those that have the sign: 24 of 77 and 82 of 292.
 const EXCHANGED: f64 = 0.28;
-/// Largest ratio of two areas and of two outlines, and largest difference of two colours, of parts that are alike.
-const AREAS: f64 = 1.3;
-const OUTLINES: f64 = 1.2;
-const COLOURS: f32 = 0.04;
-/// Parts meet where more than this share of one's outline is inside the other one.
-const MEETING: f64 = 0.05;
-/// Places on an outline that are looked at.
-const PLACES: usize = 48;
 /// Level (index in `LEVELS`) whose colours are compared, and the distance between two places that are, in its pixels.
 const LEVEL: usize = 2;
 const EACH: f64 = 2.0;
-
-/// What a part looks like at its keys.
-struct Look {
-    area: f64,
-    outline: f64,
-    colour: Padded,
-}
 
 /// Makes the points of parts that may have changed places less sure.
 ///
@@ -81,12 +65,7 @@ fn look(kit: Kit, scene: &Scene, part: &Part) -> Result<Option<Look>, TrackError
     }
     let scale = working_scale(scene.footage.height);
     let colours = [inside(kit, first, a, scale)?, inside(kit, last, b, scale)?];
-    let middle = |of: &dyn Fn(&[Point]) -> f64| median(part.keys.values().map(|key| of(key)).collect());
-    Ok(Some(Look {
-        area: middle(&|key| polygon::signed_area(key).abs()),
-        outline: middle(&|key| polyline::length(key, true)),
-        colour: (colours[0] + colours[1]) / 2.0,
-    }))
+    Ok(Some(Look::new(part.keys.values().map(Vec::as_slice), (colours[0] + colours[1]) / 2.0)))
 }
 
 /// The median colour inside a contour, by channel. Black if no place is inside.
@@ -97,27 +76,16 @@ fn inside(kit: Kit, frame: FrameNumber, contour: &[Point], scale: f64) -> Result
     let Some((low, high)) = polygon::bounds(&contour) else { return Ok(Padded::ZERO) };
     let step = level.pixel() * EACH;
     let count = |from: f64, to: f64| ((to - from) / step).clamp(0.0, 1000.0) as usize + 1;
-    let mut channels: [Vec<f64>; 3] = Default::default();
+    let mut colours = Vec::new();
     for y in 0..count(low.y, high.y) {
         for x in 0..count(low.x, high.x) {
             let place = low + Point::new(x as f64 + 0.5, y as f64 + 0.5) * step;
             if polygon::contains(&contour, place) {
-                let colour = level.colour(place);
-                channels.iter_mut().enumerate().for_each(|(k, channel)| channel.push(f64::from(colour[k])));
+                colours.push(level.colour(place));
             }
         }
     }
-    let [red, green, blue] = channels.map(|channel| median(channel) as f32);
-    Ok(Padded::new(red, green, blue, 0.0))
-}
-
-impl Look {
-    fn is_like(&self, other: &Self) -> bool {
-        let within = |a: f64, b: f64, ratio: f64| a.max(b) <= ratio * a.min(b);
-        within(self.area, other.area, AREAS)
-            && within(self.outline, other.outline, OUTLINES)
-            && (self.colour - other.colour).abs().max_element() <= COLOURS
-    }
+    Ok(median_colour(colours.iter().copied()))
 }
 
 /// The frames on which nothing says which of two parts is which.
@@ -129,11 +97,9 @@ fn undecided([a, b]: [(&Part, &PartTrack); 2]) -> Vec<FrameNumber> {
     let mut start = 0;
     for end in (1..both.len()).filter(|&k| known(both[k])) {
         // Meetings on known frames count: what parts there may still be mistaken.
-        let meetings: Vec<usize> = (start..=end).filter(|&k| meets(both[k])).collect();
-        let again = meetings.windows(2).any(|two| two[1] - two[0] > 1);
-        if let (true, Some(&first), Some(&last)) = (again, meetings.first(), meetings.last()) {
-            undecided.extend((first..=last).filter(|&k| k != start && k != end).map(|k| both[k]));
-        }
+        let between = between_meetings((start..=end).map(|k| meets(both[k])));
+        let inside = between.into_iter().flatten().map(|k| start + k).filter(|&k| k != start && k != end);
+        undecided.extend(inside.map(|k| both[k]));
         start = end;
     }
     undecided
@@ -144,17 +110,6 @@ fn is_known((part, track): (&Part, &PartTrack), frame: FrameNumber) -> bool {
     let corrected = part.pins.contains_key(&frame) || part.centers.contains_key(&frame);
     let held = || track.confidence.get(&frame).and_then(|points| mean(points)).is_some_and(|mean| mean >= HELD);
     part.keys.contains_key(&frame) || corrected || held()
-}
-
-/// Whether two closed contours overlap.
-fn meet(a: &[Point], b: &[Point]) -> bool {
-    let share = |of: &[Point], within: &[Point]| {
-        let places = polyline::resample(of, true, PLACES);
-        places.iter().filter(|&&place| polygon::contains(within, place)).count() as f64 / PLACES as f64
-    };
-    let apart = |low: Point, high: Point| low.x > high.x || low.y > high.y;
-    let (Some((low, high)), Some((from, to))) = (polygon::bounds(a), polygon::bounds(b)) else { return false };
-    !apart(low, to) && !apart(from, high) && (share(a, b) > MEETING || share(b, a) > MEETING)
 }
 
 #[cfg(test)]
@@ -214,20 +169,5 @@ mod tests {
         let mut beyond = two(&[3, 8]);
         beyond[1].0.keys.insert(10, square(30.0));
         assert_eq!(found(&beyond), [3, 4, 5, 6, 7, 8]);
-    }
-
-    #[test]
-    fn parts_are_alike_by_area_outline_and_colour() {
-        let look = |area, outline, grey: f32| Look { area, outline, colour: Padded::new(grey, grey, grey, 0.0) };
-        let own = look(100.0, 40.0, 0.5);
-        assert!(own.is_like(&look(120.0, 44.0, 0.52)));
-        assert!(!own.is_like(&look(140.0, 44.0, 0.52)) && !own.is_like(&look(120.0, 50.0, 0.52)));
-        assert!(!own.is_like(&look(100.0, 40.0, 0.6)));
-    }
-
-    #[test]
-    fn contours_that_touch_do_not_meet() {
-        assert!(meet(&square(0.0), &square(8.0)) && meet(&square(0.0), &square(0.5)));
-        assert!(!meet(&square(0.0), &square(10.5)) && !meet(&square(0.0), &[]));
     }
 }

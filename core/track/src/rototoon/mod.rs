@@ -35,6 +35,7 @@
 //! followed; a part that turns its other side to the viewer needs a key. Pictures may be at most [`WIDEST`] times as
 //! wide as high.
 
+mod alike;
 mod choice;
 mod chosen;
 pub mod confidence;

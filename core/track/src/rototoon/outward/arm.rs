@@ -147,8 +147,9 @@ impl Arm {
             (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
             growing.drawings.push(seen);
             let now = growing.judge();
-            if !must && doubtful == 0 && growing.was_leaving() && growing.leapt() {
-                beyond = growing.taken_back().map(|frame| (frame, Ending::Left));
+            if let Some(last) = growing.left_after().filter(|_| !must && now.trusted()) {
+                beyond = Some((growing.drawings[last + 1].near, Ending::Left));
+                growing.forget_beyond(last);
                 break;
             }
             let left = now.inside < LEAST_INSIDE && doubtful == 0 && growing.was_leaving();
@@ -379,22 +380,29 @@ impl Growing<'_> {
         points(before).iter().copied().chain(moved).any(|p| !in_picture(p, self.ground.width))
     }
 
-    /// Whether the part is more than its size from where its last motion would take it. A part that was about to leave the picture has
-    /// left it then, and what was found is something else.
-    fn leapt(&self) -> bool {
-        let Some(before) = self.drawings.len().checked_sub(2) else { return false };
-        let center = |d: usize| polygon::center(&self.drawings[d].pool[self.path[d]].points);
-        let expected = center(before) * 2.0 - center(before.saturating_sub(1));
-        let (last, size) = (center(before + 1), self.ground.model.texture.mesh.size);
-        let far = last.distance(expected).min(last.distance(center(before))) > size;
-        far && !self.drawings[before + 1].after_gap
+    /// The last trusted drawing before the newest one, if from there its motion would have taken the part out of the picture by half or more,
+    /// and it is more than its size from there. It has left then, and what was found is something else.
+    fn left_after(&self) -> Option<usize> {
+        let newest = self.drawings.len() - 1;
+        let last = (0..newest).rev().find(|&d| self.sure[d].trusted())?;
+        if self.drawings[last + 1..].iter().any(|seen| seen.after_gap) {
+            return None;
+        }
+        let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
+        let steps = (newest - last) as f64;
+        let expected = |(p, q): (&Point, &Point)| *p + (*p - *q) * steps;
+        let expected: Vec<Point> = points(last).iter().zip(points(last.saturating_sub(1))).map(expected).collect();
+        let leaving = 2 * expected.iter().filter(|&&p| in_picture(p, self.ground.width)).count() < expected.len();
+        let (found, size) = (polygon::center(points(newest)), self.ground.model.texture.mesh.size);
+        let far = [points(last), &expected].iter().all(|there| polygon::center(there).distance(found) > size);
+        (leaving && far).then_some(last)
     }
 
-    /// Forgets the last drawing. Returns its frame.
-    fn taken_back(&mut self) -> Option<FrameNumber> {
-        self.path.pop();
-        self.sure.pop();
-        self.drawings.pop().map(|seen| seen.near)
+    /// Forgets the drawings beyond one.
+    fn forget_beyond(&mut self, last: usize) {
+        self.drawings.truncate(last + 1);
+        self.path.truncate(last + 1);
+        self.sure.truncate(last + 1);
     }
 
     fn best(&self, from: usize) -> Vec<usize> {
