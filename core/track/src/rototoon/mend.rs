@@ -193,7 +193,6 @@ fn looked_for(stage: &Stage, pools: &Pools, guide: &Guide, d: usize) -> Result<V
                 Lead::Hinge { bindings, places } => {
                     places[d].map(|place| about(stage, d, model, (&bindings[model], place), unclaimed))
                 }
-                Lead::Twin(places) => places[d].map(|place| about_twin(stage, d, model, place)),
                 Lead::Body(motions) => motions[d].map(|motions| vec![carried(stage, d, model, &motions)]),
             };
             found.extend(new.into_iter().flatten());
@@ -230,21 +229,6 @@ fn about(
         }
     }
     let kept = best_apart(ranked(own, &scenery, starts.into_iter(), unclaimed), KEPT);
-    kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
-}
-
-/// The best poses of a model with its centre on that of a part that looks alike, in all directions, aligned.
-fn about_twin(stage: &Stage, d: usize, model: usize, place: Point) -> Vec<Hypothesis> {
-    let (own, scenery) = (&stage.models[model], stage.scenery(model, d));
-    let mut starts: Vec<Vec<Point>> = Vec::new();
-    for shape in [&own.texture.mesh.rest, &own.bent] {
-        let pivot = polygon::center(&own.texture.mesh.control_points(shape));
-        for degrees in (0..360).step_by(TURN_STEP) {
-            let turn = Point::from_angle((degrees as f64).to_radians());
-            starts.push(shape.iter().map(|&q| turn.rotate(q - pivot) + place).collect());
-        }
-    }
-    let kept = best_apart(ranked(own, &scenery, starts.into_iter(), None), KEPT);
     kept.into_iter().map(|start| hypothesis(stage, d, model, own.realigned(&scenery, &start.nodes), None)).collect()
 }
 

@@ -2,16 +2,13 @@
 //!
 //! - At a **hinge** ([`super::tie`]) the surer part gives one place. The part may turn about it.
 //! - A **body** with which the part goes ([`super::companion`]) gives its whole motion.
-//! - A **twin** is a part that looks [alike](super::super::alike). Between two meetings of both each may be taken for the other one. So each is
-//!   looked for on the other one's place.
 
 use super::Bonds;
 use super::companion::{Companions, Motions};
 use super::contender::{Contender, Paths};
 use super::tie::Tie;
-use crate::rototoon::alike::{Look, between_meetings, median_colour, meet};
 use crate::rototoon::lattice::mesh::Binding;
-use rototoon_base::geometry::{Point, polygon};
+use rototoon_base::geometry::Point;
 
 /// A part is in doubt if the first hypotheses of its two models, the ends of its torn joint, or it and the place to which its
 /// body takes it are further apart than this, in working pixels.
@@ -29,8 +26,6 @@ pub enum Lead {
     },
     /// Motions from both keys.
     Body(Vec<Option<Motions>>),
-    /// Where the centre of a twin is.
-    Twin(Vec<Option<Point>>),
 }
 
 impl Lead {
@@ -38,7 +33,7 @@ impl Lead {
     pub fn place(&self, d: usize) -> Option<Point> {
         match self {
             Self::Hinge { places, .. } => places[d],
-            Self::Body(_) | Self::Twin(_) => None,
+            Self::Body(_) => None,
         }
     }
 
@@ -47,7 +42,6 @@ impl Lead {
         match self {
             Self::Hinge { places, .. } => places[d].is_some(),
             Self::Body(motions) => motions[d].is_some(),
-            Self::Twin(places) => places[d].is_some(),
         }
     }
 
@@ -58,7 +52,6 @@ impl Lead {
                 bindings == theirs && places[d] == there[d]
             }
             (Self::Body(motions), Self::Body(theirs)) => motions[d] == theirs[d],
-            (Self::Twin(places), Self::Twin(there)) => places[d] == there[d],
             _ => false,
         }
     }
@@ -74,13 +67,10 @@ pub fn same_on(a: &[Lead], b: &[Lead], d: usize) -> bool {
 /// The leads of each contender. `paths` are the present choices.
 pub fn leads(contenders: &[Contender], bonds: &Bonds, paths: &Paths) -> Vec<Vec<Lead>> {
     let companions = Companions::new(contenders, &bonds.companions);
-    let looks = Looks::of(contenders);
     let of = |c: usize| {
         let hinges = bonds.ties.iter().filter_map(|tie| hinge(contenders, tie, c, paths));
         let bodies = (0..bonds.companions.len()).filter(|&k| bonds.companions[k].parts[0] == c);
-        let bodies = bodies.filter_map(|k| body(contenders, &companions, k, paths));
-        let others = (0..contenders.len()).filter(|&other| looks.are_alike(c, other));
-        hinges.chain(bodies).chain(others.filter_map(|other| twin(contenders, [c, other], paths))).collect()
+        hinges.chain(bodies.filter_map(|k| body(contenders, &companions, k, paths))).collect()
     };
     (0..contenders.len()).map(of).collect()
 }
@@ -113,35 +103,4 @@ fn body(contenders: &[Contender], companions: &Companions, index: usize, paths: 
     };
     let motions: Vec<Option<Motions>> = (0..contenders[part].pools.len()).map(motions).collect();
     motions.iter().any(Option::is_some).then_some(Lead::Body(motions))
-}
-
-/// What contenders look like; `None` for open ones.
-struct Looks(Vec<Option<Look>>);
-
-impl Looks {
-    fn of(contenders: &[Contender]) -> Self {
-        let look = |c: &Contender| {
-            let texels = || c.models.iter().flat_map(|model| model.texture.measured());
-            let inside = texels().filter(|texel| texel.weight >= 1.0).map(|texel| texel.key.colour);
-            c.hides.then(|| Look::new(c.keys().into_iter(), median_colour(inside)))
-        };
-        Self(contenders.iter().map(look).collect())
-    }
-
-    fn are_alike(&self, a: usize, b: usize) -> bool {
-        a != b && matches!((&self.0[a], &self.0[b]), (Some(a), Some(b)) if a.is_like(b))
-    }
-}
-
-/// Where the other one of two contenders that look alike is, between two meetings of both.
-fn twin(contenders: &[Contender], [c, other]: [usize; 2], paths: &Paths) -> Option<Lead> {
-    let (own, twin) = (&contenders[c], &contenders[other]);
-    if own.span != twin.span || own.drawings != twin.drawings {
-        return None;
-    }
-    let points = |k: usize, d: usize| &contenders[k].pools[d][paths[k][d]].points[..];
-    let count = own.pools.len();
-    let between = between_meetings((0..count).map(|d| meet(points(c, d), points(other, d))))?;
-    let place = |d: usize| between.contains(&d).then(|| polygon::center(points(other, d)));
-    Some(Lead::Twin((0..count).map(place).collect()))
 }
