@@ -70,6 +70,9 @@ def test_openjd_runs_the_job(tmp_path, frames, undisturbed):
     for step in ("Shots", "Page"):
         done = run(openjd, "run", template, "--step", step, "-p", f"Program={program()}")
         assert done.returncode == 0, done.stdout + done.stderr
+        if step == "Shots":
+            told = [float(line.split()[-1]) for line in done.stdout.splitlines() if "openjd_progress: " in line]
+            assert told and max(told) == 100 and min(told) >= 0, done.stdout
     assert results(out) == undisturbed
     summary = json.loads((out / "summary.json").read_text())
     assert summary["good"] + summary["wants_keys"] == SHOTS

@@ -1,15 +1,18 @@
 //! What a batch and the program that takes its steps say to each other.
 //!
 //! One program takes all steps of a shot, so that each frame is decoded once. The batch writes the words of a subcommand to
-//! its standard input, a JSON list in each line. The program's standard error has errors, warnings and notes. Its last line
-//! for each step is the answer:
+//! its standard input, a JSON list in each line. The program's standard error has errors, warnings and notes. Between them it says
+//! how far the step is, as a share of 1 and in words. Its last line for each step is the answer:
 //!
 //! ```text
+//! at: 0.4213 Reading frames
 //! step: 2 status=0 peak_bytes=123456789 kept_bytes=62208000 processor_ms=5100
 //! ```
 
 /// What an answer begins with.
 const BEGIN: &str = "step: ";
+/// What a line begins with that says how far a step is.
+const AT: &str = "at: ";
 
 /// The end of a step, as its program tells it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +46,17 @@ impl Answer {
         let (peak_bytes, kept_bytes) = (number("peak_bytes")?, number("kept_bytes")?);
         Some(Self { step, status, peak_bytes, kept_bytes, processor_ms: number("processor_ms")? })
     }
+}
+
+/// The line that says how far a step is, without its end.
+pub fn at(share: f64, doing: &str) -> String {
+    format!("{AT}{share:.4} {doing}")
+}
+
+/// How far a step is, and what it does; `None` if the line does not say it.
+pub fn read_at(line: &str) -> Option<(f64, &str)> {
+    let (share, doing) = line.strip_prefix(AT)?.split_once(' ')?;
+    Some((share.parse().ok().filter(|share| (0.0..=1.0).contains(share))?, doing))
 }
 
 /// The line that asks for a subcommand, with its end.
@@ -79,6 +93,10 @@ mod tests {
             ["", "note: step: 3", "step: 3 status=300 peak_bytes=1 kept_bytes=1 processor_ms=1", "step: 3 status=0"]
         {
             assert_eq!(Answer::read(wrong), None, "{wrong}");
+        }
+        assert_eq!(read_at(&at(0.42131, "Reading frames")), Some((0.4213, "Reading frames")));
+        for wrong in ["", "note: at: 0.5 a", "at: 1.5 a", "at: NaN a", "at: 0.5"] {
+            assert_eq!(read_at(wrong), None, "{wrong}");
         }
         let list = ["track", "a \"b\"\n.json"].map(str::to_owned);
         let line = request(&list);

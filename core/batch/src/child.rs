@@ -3,7 +3,7 @@
 //! [`answer`](crate::answer) says how the two speak. A program that the system ends, for want of memory or for another
 //! reason, ends the shot and nothing else.
 
-use crate::answer::{Answer, request};
+use crate::answer::{Answer, read_at, request};
 use crate::peak;
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -98,17 +98,23 @@ impl Program {
         Ok(Self { child, requests, output, steps: 0 })
     }
 
-    /// Runs a subcommand until it ends or `stop` is true. After an end by the system or by `stop` the program is gone.
+    /// Its number in the system.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Runs a subcommand until it ends or `stop` is true. After an end by the system or by `stop` the program is gone. `at` is told how far it is, as a
+    /// share of 1 and in words.
     ///
     /// # Errors
     ///
     /// The system does not say how the program ended.
-    pub fn step(&mut self, words: &[String], stop: &dyn Fn() -> bool) -> io::Result<Ended> {
+    pub fn step(&mut self, words: &[String], stop: &dyn Fn() -> bool, at: &dyn Fn(f64, &str)) -> io::Result<Ended> {
         let start = Instant::now();
         self.steps += 1;
         // If the program is gone, its output has ended too.
         let _ = self.requests.as_mut().map(|pipe| pipe.write_all(request(words).as_bytes()));
-        let Heard { said, end, asked, held } = self.listen(stop)?;
+        let Heard { said, end, asked, held } = self.listen(stop, at)?;
         let text = String::from_utf8_lossy(&said);
         let messages = text.lines().filter(|line| Answer::read(line).is_none()).map(str::to_owned).collect();
         let (code, description, answer) = match end {
@@ -129,12 +135,15 @@ impl Program {
     }
 
     /// Listens until the program answers or ends. If `stop` is true it is asked to end, and killed if it takes too long.
-    fn listen(&mut self, stop: &dyn Fn() -> bool) -> io::Result<Heard> {
+    fn listen(&mut self, stop: &dyn Fn() -> bool, at: &dyn Fn(f64, &str)) -> io::Result<Heard> {
         let (mut said, mut asked) = (Vec::new(), None::<Instant>);
         let (mut looked, mut held) = (Instant::now(), 0);
         let end = loop {
             match self.output.recv_timeout(PAUSE) {
-                Ok(block) => said.extend(block),
+                Ok(block) => {
+                    said.extend(block);
+                    take_progress(&mut said, at);
+                }
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break End::Gone(self.end()?),
             }
@@ -186,6 +195,19 @@ impl Drop for Program {
     }
 }
 
+/// Takes the lines out of what was said that say how far the step is, and tells `at` of each. The last line may not be whole yet.
+fn take_progress(said: &mut Vec<u8>, at: &dyn Fn(f64, &str)) {
+    let mut kept = Vec::with_capacity(said.len());
+    for line in said.split_inclusive(|&byte| byte == b'\n') {
+        let whole = line.strip_suffix(b"\n").and_then(|line| str::from_utf8(line).ok());
+        match whole.and_then(read_at) {
+            Some((share, doing)) => at(share, doing),
+            None => kept.extend_from_slice(line),
+        }
+    }
+    *said = kept;
+}
+
 /// Leaves out the middle of what is too long.
 fn shorten(said: &mut Vec<u8>) {
     if said.len() > 2 * MOST_MESSAGES {
@@ -225,7 +247,7 @@ mod tests {
     }
 
     fn step(program: &mut Program) -> Ended {
-        program.step(&["track".into()], &|| false).unwrap()
+        program.step(&["track".into()], &|| false, &|_, _| {}).unwrap()
     }
 
     #[test]
@@ -250,6 +272,19 @@ mod tests {
     }
 
     #[test]
+    fn how_far_a_step_is_is_told_and_is_no_message() {
+        let mut program = shell(
+            "read a; echo 'at: 0.0000 Reading frames' >&2; echo 'note: a' >&2; printf 'at: 0.5' >&2; sleep 0.2; echo '000 Tracking' >&2; \
+             echo 'at: 7 no share' >&2; echo 'step: 1 status=0 peak_bytes=0 kept_bytes=0 processor_ms=40' >&2; read a",
+        );
+        let told = std::sync::Mutex::new(Vec::new());
+        let at = |share: f64, doing: &str| told.lock().unwrap().push((share, doing.to_owned()));
+        let ended = program.step(&["track".into()], &|| false, &at).unwrap();
+        assert_eq!(*told.lock().unwrap(), [(0.0, "Reading frames".to_owned()), (0.5, "Tracking".to_owned())]);
+        assert_eq!((ended.status, ended.messages), (Some(0), vec!["note: a".to_owned(), "at: 7 no share".to_owned()]));
+    }
+
+    #[test]
     fn a_program_that_was_ended_says_how() {
         let mut program = shell("read a; echo 'note: a' >&2; sleep 0.5; kill -9 $$");
         for messages in [1, 0] {
@@ -263,7 +298,7 @@ mod tests {
     #[test]
     fn a_stop_ends_the_program() {
         let seen = AtomicBool::new(false);
-        let ended = shell("exec sleep 60").step(&[], &|| seen.swap(true, Ordering::Relaxed)).unwrap();
+        let ended = shell("exec sleep 60").step(&[], &|| seen.swap(true, Ordering::Relaxed), &|_, _| {}).unwrap();
         assert!(ended.stopped && ended.status.is_none() && ended.seconds < 30.0);
     }
 

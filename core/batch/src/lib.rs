@@ -19,6 +19,8 @@
 //! - [`peak`]: the most memory that a process has held
 //! - [`findings`]: confidence, lost parts and the keys that would help most
 //! - [`report`]: JSON lines while it runs
+//! - [`host`]: which machine writes them, and when
+//! - [`ahead`]: how far all shots together are
 //! - [`summary`]: what all records together say
 //! - [`page`]: the same for a person, as one HTML file
 //! - [`jobs`]: templates for render farms
@@ -29,15 +31,17 @@
 //! names. A worker that is killed therefore leaves one of three states: the step is not done; it is done but files keep
 //! their first names, and the next worker renames them; it is done. A file that no worker wrote is never replaced.
 //!
-//! No decision depends on a clock or on the time of a file: machines of a farm disagree about both.
+//! No decision depends on a clock or on the time of a file: machines of a farm disagree about both. Times are in the report alone.
 
 #![forbid(unsafe_code)]
 
+pub mod ahead;
 pub mod answer;
 pub mod budget;
 pub mod child;
 pub mod digest;
 pub mod findings;
+pub mod host;
 pub mod jobs;
 pub mod lock;
 pub mod manifest;

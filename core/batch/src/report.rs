@@ -1,18 +1,24 @@
 //! The report: a JSON object in each line, written while the batch runs.
 //!
-//! `event` is `begin`, `step`, `shot` or `end`. A line has no date: machines of a farm disagree about it. Several workers
-//! may write to one file; each line is written at once. If somebody opened the file in another program and saved it
+//! `event` is `begin`, `wait`, `start`, `step`, `shot`, `stop` or `end`. Each line says when it was written, and by whom: `time` (UTC, RFC 3339), `host` and `pid`, the
+//! worker's process. So a wrangler sees which worker has which step since when, and finds the one that hangs: a `start` without its `step`, whose worker wrote no
+//! `stop` or `end` after it. Clocks of a farm's machines differ by seconds: lines of one host are in order, those of two need not be. Results have no times, so their bytes are the same
+//! on each run.
+//!
+//! Several workers may write to one file; each line is written at once. If somebody opened the file in another program and saved it
 //! without a line end, a new line is begun first. Nothing is ever read back from it.
 //!
 //! Lines are added to a report only, never to another file. A report is known by how its first line begins. Spreadsheets
 //! put a mark before it and double its quotes, so these are not looked at.
 
+use crate::host;
 use rototoon::project::WriteError;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs::{File, OpenOptions};
 use std::io::{Error, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use std::time::SystemTime;
 
 /// What the first line of a report begins with, without quotes.
 const BEGIN: &str = "{event:";
@@ -61,12 +67,19 @@ impl Report {
         Ok(Self { path: path.to_owned(), file: Mutex::new(file) })
     }
 
-    /// Writes a line.
+    /// Writes a line, with the time, the host and the process at its end.
     ///
     /// # Errors
     ///
     /// The disk is full or gone.
-    pub fn line(&self, value: &Value) -> Result<(), WriteError> {
+    pub fn line(&self, mut value: Value) -> Result<(), WriteError> {
+        for (name, what) in [
+            ("time", json!(host::time(SystemTime::now()))),
+            ("host", json!(host::name())),
+            ("pid", json!(std::process::id())),
+        ] {
+            value[name] = what;
+        }
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(format!("{value}\n").as_bytes()).map_err(|source| WriteError { path: self.path.clone(), source })
     }
@@ -95,14 +108,17 @@ mod tests {
     fn lines_are_added_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("report.jsonl");
-        Report::open(&path).unwrap().line(&json!({"event": 1})).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "{\"event\":1}\n");
+        Report::open(&path).unwrap().line(json!({"event": 1})).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text.starts_with("{\"event\":1,\"time\":\"2") && text.ends_with("}\n"), "{text}");
+        let line: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!((&line["host"], &line["pid"]), (&json!(host::name()), &json!(std::process::id())));
         std::fs::write(&path, "\"{\"\"event\"\":1}\"").unwrap();
         let report = Report::open(&path).unwrap();
         std::thread::scope(|scope| {
             for k in 0..4 {
                 let report = &report;
-                scope.spawn(move || (0..50).for_each(|n| report.line(&json!({"k": k, "n": n})).unwrap()));
+                scope.spawn(move || (0..50).for_each(|n| report.line(json!({"k": k, "n": n})).unwrap()));
             }
         });
         let text = std::fs::read_to_string(&path).unwrap();

@@ -1,12 +1,14 @@
 //! Works through the shots, several at a time.
 
+use crate::ahead::Ahead;
 use crate::budget::{Budget, estimate, kept};
 use crate::lock::Lock;
 use crate::manifest::{Manifest, Shot};
 use crate::queue::{Place, Queue};
 use crate::record::Record;
 use crate::report::{Report, rounded};
-use crate::shot::{self, ShotError, StepEnd, Worker};
+use crate::shot::{self, News, ShotError, StepEnd, Worker};
+use crate::step::Step;
 use crate::summary::{Outcome, read_record};
 use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
@@ -43,6 +45,8 @@ pub struct Options<'a> {
     pub waits: &'a (dyn Fn(&Shot) + Sync),
     /// Is told of each shot that ended, with the number of shots that have.
     pub told: &'a (dyn Fn(&Shot, &Outcome, usize) + Sync),
+    /// Is told how far all shots together are, as a share of 1, and what is done.
+    pub at: &'a (dyn Fn(f64, &str) + Sync),
 }
 
 /// Why a batch could not go on.
@@ -65,7 +69,7 @@ pub fn run(manifest: &Manifest, options: &Options) -> Result<Vec<Outcome>, Batch
     make_folder(&options.folder)?;
     let report = Report::open(&options.report)?;
     let count = options.shots.len();
-    report.line(&json!({
+    report.line(json!({
         "event": "begin", "shots": count, "jobs": options.jobs, "memory_bytes": options.memory.bytes()
     }))?;
     let run = Run {
@@ -74,18 +78,21 @@ pub fn run(manifest: &Manifest, options: &Options) -> Result<Vec<Outcome>, Batch
         report,
         queue: Queue::new(count),
         ended: AtomicUsize::new(0),
+        ahead: Ahead::new(count),
         outcomes: Mutex::new(vec![None; count]),
         trouble: Mutex::new(None),
     };
     std::thread::scope(|scope| (0..options.jobs.max(1)).for_each(|_| drop(scope.spawn(|| run.work()))));
-    if let Some(error) = locked(&run.trouble).take() {
-        return Err(error);
+    match locked(&run.trouble).take() {
+        None | Some(BatchError::Stopped) => {}
+        Some(error) => return Err(error),
     }
     let outcomes: Vec<Outcome> = locked(&run.outcomes).drain(..).flatten().collect();
     if outcomes.len() < count {
+        run.report.line(json!({"event": "stop", "ended": outcomes.len(), "shots": count}))?;
         return Err(BatchError::Stopped);
     }
-    run.report.line(&end(&outcomes))?;
+    run.report.line(end(&outcomes))?;
     Ok(outcomes)
 }
 
@@ -97,6 +104,7 @@ struct Run<'a> {
     queue: Queue,
     /// Number of shots that ended.
     ended: AtomicUsize,
+    ahead: Ahead,
     outcomes: Mutex<Vec<Option<Outcome>>>,
     trouble: Mutex<Option<BatchError>>,
 }
@@ -108,8 +116,9 @@ impl Run<'_> {
         while let Some(place) = self.queue.take() {
             let shot = options.shots.get(place.at).and_then(|&index| self.manifest.shots.get(index));
             let Some(shot) = shot.filter(|_| !(options.stop)() && locked(&self.trouble).is_none()) else { return };
-            match one(shot, options, &self.report) {
+            match self.one(place.at, shot) {
                 Ok(Some(outcome)) => {
+                    (options.at)(self.ahead.end(place.at), &shot.name);
                     (options.told)(shot, &outcome, self.ended.fetch_add(1, Ordering::Relaxed) + 1);
                     locked(&self.outcomes)[place.at] = Some(outcome);
                 }
@@ -123,21 +132,38 @@ impl Run<'_> {
             }
         }
     }
-}
 
-/// Works on a shot; `None` if another worker has it.
-fn one(shot: &Shot, options: &Options, report: &Report) -> Result<Option<Outcome>, BatchError> {
-    let folder = options.folder.join(&shot.name);
-    let outcome = match in_folder(shot, &folder, options, report) {
-        Ok(Some(record)) => Outcome::of(&record),
-        Ok(None) => return Ok(None),
-        Err(ShotError::Stopped) => return Err(BatchError::Stopped),
-        // A folder that vanished concerns this shot alone.
-        Err(error) => Outcome::Failed(error.to_string()),
-    };
-    let record = Record::read(&folder).map(|(record, _)| record).unwrap_or_default();
-    report.line(&line(shot, &outcome, &record))?;
-    Ok(Some(outcome))
+    /// Works on a shot; `None` if another worker has it. `at` is its place among the shots to work on.
+    fn one(&self, at: usize, shot: &Shot) -> Result<Option<Outcome>, BatchError> {
+        let folder = self.options.folder.join(&shot.name);
+        let told = |shot: &Shot, news: &News| self.tell(at, shot, news);
+        let outcome = match in_folder(shot, &folder, self.options, &told) {
+            Ok(Some(record)) => Outcome::of(&record),
+            Ok(None) => return Ok(None),
+            Err(ShotError::Stopped) => return Err(BatchError::Stopped),
+            // A folder that vanished concerns this shot alone.
+            Err(error) => Outcome::Failed(error.to_string()),
+        };
+        let record = Record::read(&folder).map(|(record, _)| record).unwrap_or_default();
+        self.report.line(line(shot, &outcome, &record))?;
+        Ok(Some(outcome))
+    }
+
+    /// Enters what a shot does into the report, and tells how far all are. A report that cannot be written is found at the end of the shot.
+    fn tell(&self, at: usize, shot: &Shot, news: &News) {
+        match news {
+            News::Begins { step, program } => {
+                let _ =
+                    self.report.line(json!({"event": "start", "shot": shot.name, "step": step, "program": program}));
+            }
+            News::At { before, share, doing } => {
+                let step = shot.steps.get(*before).map_or("", Step::name);
+                let all = self.ahead.at(at, (*before, shot.steps.len()), *share);
+                (self.options.at)(all, &format!("{}: {step}: {doing}, {:.0} %", shot.name, 100.0 * share));
+            }
+            News::Ends(end) => drop(self.report.line(step_line(shot, end))),
+        }
+    }
 }
 
 /// Waits a moment for a shot that another worker has. At its first try the free shots still come; then it is told once.
@@ -146,25 +172,29 @@ fn wait(shot: &Shot, place: Place, options: &Options, report: &Report) {
         return;
     }
     if place.locked == 1 {
-        let _ = report.line(&json!({"event": "wait", "shot": shot.name}));
+        let _ = report.line(json!({"event": "wait", "shot": shot.name}));
         (options.waits)(shot);
     }
     sleep(PAUSE);
 }
 
-fn in_folder(shot: &Shot, folder: &Path, options: &Options, report: &Report) -> Result<Option<Record>, ShotError> {
+fn in_folder(
+    shot: &Shot,
+    folder: &Path,
+    options: &Options,
+    told: &(dyn Fn(&Shot, &News) + Sync),
+) -> Result<Option<Record>, ShotError> {
     make_folder(folder)?;
     // A shot that waits for memory is free for other workers, and no memory is asked for one that another worker has.
     if Lock::take(folder)?.is_none() {
         return Ok(None);
     }
-    let told = |shot: &Shot, end: &StepEnd| drop(report.line(&step_line(shot, end)));
     let need = need(shot, folder, options.threads);
     let part = options.memory.bytes() / options.jobs.max(1) as u64;
     let keep = need.frames.min(part.saturating_sub(need.steps));
     let _share = options.memory.take(need.steps.saturating_add(keep));
     let Some(lock) = Lock::take(folder)? else { return Ok(None) };
-    let worker = Worker { program: &options.program, threads: options.threads, keep, stop: options.stop, told: &told };
+    let worker = Worker { program: &options.program, threads: options.threads, keep, stop: options.stop, told };
     shot::run(shot, folder, &lock, &worker).map(Some)
 }
 
@@ -224,7 +254,6 @@ fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::step::Step;
 
     /// A manifest of one shot, whose project does not exist.
     fn manifest() -> Manifest {
@@ -251,6 +280,7 @@ mod tests {
             stop: &|| false,
             waits: &|_| {},
             told: &|_, _, _| {},
+            at: &|_, _| {},
         };
         let all = options.memory.take(10);
         std::thread::scope(|scope| {

@@ -30,7 +30,30 @@ pub struct Worker<'a> {
     /// Whether the batch was asked to end.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Is told of each step.
-    pub told: &'a (dyn Fn(&Shot, &StepEnd) + Sync),
+    pub told: &'a (dyn Fn(&Shot, &News) + Sync),
+}
+
+/// What is told of the steps of a shot while they run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum News<'a> {
+    /// A step begins; steps that are found done do not.
+    Begins {
+        /// The subcommand.
+        step: &'static str,
+        /// The number of the program that takes it.
+        program: u32,
+    },
+    /// How far a step is.
+    At {
+        /// The steps before it.
+        before: usize,
+        /// The share of it that is done.
+        share: f64,
+        /// What it does.
+        doing: &'a str,
+    },
+    /// A step ended.
+    Ends(StepEnd),
 }
 
 /// The end of a step.
@@ -194,7 +217,7 @@ impl Work<'_> {
             return Ok(());
         }
         self.clear()?;
-        let ended = self.start(step, document)?;
+        let ended = self.start(index, step, document)?;
         if ended.stopped {
             self.clear()?;
             return Err(ShotError::Stopped);
@@ -247,7 +270,7 @@ impl Work<'_> {
         Ok(names)
     }
 
-    fn start(&mut self, step: &Step, document: &Path) -> Result<Ended, ShotError> {
+    fn start(&mut self, index: usize, step: &Step, document: &Path) -> Result<Ended, ShotError> {
         let prefix = format!("{}{NEW}", folder_text(&self.folder));
         let mut words = step.words(&document.to_string_lossy(), &prefix);
         if step.reads_footage() {
@@ -261,7 +284,10 @@ impl Work<'_> {
                 Program::start(self.worker.program, &self.folder, lock, self.worker.keep).map_err(failed)?
             }
         };
-        let mut ended = program.step(&words, &self.worker.stop).map_err(failed)?;
+        let (shot, told) = (self.shot, self.worker.told);
+        told(shot, &News::Begins { step: step.name(), program: program.id() });
+        let at = |share: f64, doing: &str| told(shot, &News::At { before: index, share, doing });
+        let mut ended = program.step(&words, &self.worker.stop, &at).map_err(failed)?;
         ended.messages.iter_mut().for_each(|message| *message = with_final_names(message));
         self.program = Some(program);
         Ok(ended)
@@ -367,7 +393,7 @@ impl Work<'_> {
             kept_bytes: ended.map_or(0, |ended| ended.kept_bytes),
             messages: ended.map(|ended| ended.messages.clone()).unwrap_or_default(),
         };
-        (self.worker.told)(self.shot, &end);
+        (self.worker.told)(self.shot, &News::Ends(end));
     }
 }
 
@@ -436,7 +462,7 @@ mod tests {
         fs::write(&project, json!({"rototoon": 1, "footage": footage, "parts": []}).to_string()).unwrap();
         let steps = vec![Step::read(&json!({"do": "check"})).unwrap()];
         let shot = Shot { name: "a".into(), project, blend: None, steps };
-        let (lock, told) = (Lock::take(folder.path()).unwrap().unwrap(), |_: &Shot, _: &StepEnd| {});
+        let (lock, told) = (Lock::take(folder.path()).unwrap().unwrap(), |_: &Shot, _: &News| {});
         let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &|| false, told: &told };
         let record = run(&shot, folder.path(), &lock, &worker).unwrap();
         let failure = record.failure.as_str();

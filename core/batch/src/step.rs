@@ -160,7 +160,7 @@ fn own_name(field: &str, name: &str) -> Result<String, String> {
 
 fn add_option(words: &mut Vec<String>, name: &str, value: &Value) -> Result<(), String> {
     let word = format!("--{}", name.replace('_', "-"));
-    if ["--output", "--threads", "--help"].contains(&word.as_str()) {
+    if ["--output", "--threads", "--progress", "--help"].contains(&word.as_str()) {
         return Err(format!("{name}: not an option of a step"));
     }
     let text = match value {
@@ -255,6 +255,7 @@ mod tests {
             (json!({"do": "track", "report": 7}), "report: found 7, expected the name"),
             (json!({"do": "track", "output": "x"}), "output: not an option"),
             (json!({"do": "track", "threads": 9}), "threads: not an option"),
+            (json!({"do": "track", "progress": "json"}), "progress: not an option"),
             (json!({"do": "track", "preset": {}}), "preset: found an object, expected a text"),
         ] {
             assert!(words(&value).starts_with(&format!("error: {begin}")), "{}", words(&value));

@@ -1,6 +1,7 @@
 //! Command-line options made from the core's list of parameters, and functions that read their values.
 
 use crate::failure::Failure;
+use crate::tell;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use rototoon::lines::ink;
@@ -38,6 +39,11 @@ fn named(path: PathBuf) -> Result<PathBuf, &'static str> {
 /// One option for each parameter of a stage.
 pub fn of_stage(stage: Stage) -> impl Iterator<Item = Arg> {
     of(stage).map(option)
+}
+
+/// The options of long work: its threads, and how it tells its progress.
+pub fn of_run() -> impl Iterator<Item = Arg> {
+    of_stage(Stage::Run).chain([tell::option()])
 }
 
 fn option(parameter: &'static Parameter) -> Arg {
@@ -122,11 +128,6 @@ pub fn without(arguments: &ArgMatches, ids: &[&str], with: &str) -> Result<(), F
             Err(Failure::Use(format!("found {found}: expected no such option {with}, where it changes nothing")))
         }
     }
-}
-
-/// The number of threads given; 0 for one per core.
-pub fn threads(arguments: &ArgMatches) -> usize {
-    arguments.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
 }
 
 /// `--frames A-B` of work on drawings.

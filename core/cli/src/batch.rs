@@ -1,6 +1,7 @@
 //! `rototoon batch`: works through many shots.
 
 use crate::failure::{Failure, line};
+use crate::tell::{self, Teller, Way};
 use crate::{arguments, export, progress, render};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
@@ -35,6 +36,7 @@ pub fn command() -> Command {
         )
         .arg(arguments::output("DIR", "The folder of the results; each shot gets a folder in it"))
         .args(of_machine())
+        .arg(tell::option())
         .args(of_shots())
         .arg(
             Arg::new("report")
@@ -161,6 +163,7 @@ fn work(
     line("note", &format!("{all} {shots_word}, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));
     let program =
         std::env::current_exe().map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
+    let teller = Teller::new(Way::of(given, false), path.display().to_string());
     let options = Options {
         folder: folder.to_owned(),
         shots,
@@ -172,11 +175,14 @@ fn work(
         stop: &progress::stopped,
         waits: &|shot| line("note", &format!("{}: waiting for another worker that has it", shot.name)),
         told: &|shot, outcome, ended| tell(shot, outcome, ended, all),
+        at: &|share, doing| teller.report(doing, share),
     };
-    run::run(manifest, &options).map_err(|error| match error {
+    let outcomes = run::run(manifest, &options).map_err(|error| match error {
         BatchError::Write(error) => Failure::Write(error),
         BatchError::Stopped => Failure::Other(error.to_string()),
-    })
+    })?;
+    teller.end(&format!("{all} {shots_word}"));
+    Ok(outcomes)
 }
 
 /// The places of the shots to work on.

@@ -6,7 +6,6 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::{Document, Severity};
 use rototoon::scene::FrameNumber;
-use rototoon::scene::parameters::Stage;
 use std::path::{Component, Path};
 
 /// The subcommand.
@@ -20,7 +19,7 @@ pub fn command() -> Command {
                 .help("Also lists the drawings: frames that are held, with noise or without it, are one drawing")
                 .action(ArgAction::SetTrue),
         )
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -28,7 +27,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let path = arguments::path(given, "project");
     let document = Document::load(path)?;
     let home = project::home(&document, path);
-    let problems = progress::run(arguments::threads(given), |bar| Ok(pipeline::check(&document, &home, bar)?))?;
+    let problems = progress::run(given, path, |bar| Ok(pipeline::check(&document, &home, bar)?))?;
     if let Some(outside) = outside(&document.scene.footage.pattern) {
         line("note", &format!("{}: footage.pattern: {outside}", path.display()));
     }
@@ -54,7 +53,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         line("note", &format!("{}: {beyond}", path.display()));
     }
     if given.get_flag("drawings") {
-        let drawings = progress::run(arguments::threads(given), |bar| Ok(pipeline::held(&document, &home, bar)?))?;
+        let drawings = progress::run(given, path, |bar| Ok(pipeline::held(&document, &home, bar)?))?;
         line("note", &format!("{}: {}", path.display(), listed(&drawings)));
     }
     line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));

@@ -10,7 +10,6 @@ use rototoon::project::output::check_writable;
 use rototoon::project::place::folder_for;
 use rototoon::project::schema::{MAX_COORDINATE, MAX_FPS, MIN_FPS};
 use rototoon::project::{Document, Inputs, write_whole};
-use rototoon::scene::parameters::Stage;
 use std::path::{Path, PathBuf};
 
 /// The subcommand.
@@ -61,7 +60,7 @@ pub fn command() -> Command {
                 .help("Also writes what became of each frame as JSON")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Reads a place `X,Y`.
@@ -91,7 +90,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         inputs.check(path)?;
         check_writable(path)?;
     }
-    let conformed = progress::run(arguments::threads(given), |bar| {
+    let conformed = progress::run(given, from, |bar| {
         pipeline::conform(&document, &home, &new, bar).map_err(|error| explained(error, from))
     })?;
     // The frames of the new footage are inputs too.

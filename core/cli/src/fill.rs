@@ -7,7 +7,6 @@ use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{self, FillOptions};
 use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
-use rototoon::scene::parameters::Stage;
 use std::ops::RangeInclusive;
 
 /// The subcommand.
@@ -30,7 +29,7 @@ pub fn command() -> Command {
                 .default_value("0")
                 .value_parser(arguments::within(0.0, 1.0)),
         )
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -45,7 +44,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);
     let lines = Options { style: Style::Auto, sensitivity, leave_out: arguments::left_out(given) };
     let options = FillOptions { lines, confidence };
-    let (document, report) = progress::run(arguments::threads(given), |bar| {
+    let (document, report) = progress::run(given, from, |bar| {
         let report =
             pipeline::fill(&mut document, &home, frames, &options, bar).map_err(|error| Failure::of(error, from))?;
         Ok((document, report))

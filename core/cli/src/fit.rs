@@ -9,7 +9,6 @@ use rototoon::pipeline;
 use rototoon::project::curves::Curves;
 use rototoon::project::output::check_writable;
 use rototoon::project::{Inputs, write_whole};
-use rototoon::scene::parameters::Stage;
 use std::path::PathBuf;
 
 /// The subcommand.
@@ -44,7 +43,7 @@ pub fn command() -> Command {
                     PossibleValue::new("yang1986").help("Yang et al. 1986"),
                 ])),
         )
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -64,7 +63,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     Inputs::default().file(from).check(to)?;
     check_writable(to)?;
     let options = Options { tolerance, preset };
-    let text = progress::run(arguments::threads(given), |bar| {
+    let text = progress::run(given, from, |bar| {
         pipeline::fit_curves(&curves, &options, bar).map_err(|error| Failure::of(error, from))
     })?;
     Ok(write_whole(to, text.as_bytes())?)

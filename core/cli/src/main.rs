@@ -2,7 +2,8 @@
 //!
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`project`]: reads and writes documents
-//! - [`progress`]: threads, the progress bar, and Ctrl-C
+//! - [`progress`]: threads and Ctrl-C
+//! - [`tell`]: how progress is told
 //! - [`failure`]: errors and exit statuses
 //! - [`track`], [`snap`], [`trace`], [`fill`], [`recolour`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`conform`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
@@ -32,6 +33,7 @@ mod signals;
 mod snap;
 mod steps;
 mod style;
+mod tell;
 mod trace;
 mod track;
 mod tween;

@@ -1,4 +1,4 @@
-//! Runs long work on the requested number of threads. If standard error is a terminal, it shows a progress bar.
+//! Runs long work on the requested number of threads, tells its progress ([`crate::tell`]), and ends it when the program is asked to.
 //!
 //! Ctrl-C cancels the work in an orderly way, so that no file is half-written. Where a step takes longer than [`GRACE`] to
 //! notice, the process ends without it. Files are still complete or absent, because each is renamed when it is complete,
@@ -7,15 +7,15 @@
 
 use crate::failure::{Failure, line};
 use crate::signals;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::tell::{Teller, Way};
+use clap::ArgMatches;
 use rototoon::project::unfinished;
 use rototoon::scene::{Cancelled, Progress};
-use std::io::IsTerminal;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-/// Number of steps of the bar.
-const STEPS: u64 = 1000;
 /// The exit status that shells report for a process ended by Ctrl-C.
 const INTERRUPTED: i32 = 130;
 
@@ -24,18 +24,20 @@ const GRACE: Duration = Duration::from_millis(1500);
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
-struct Bar(ProgressBar);
+/// Long work as it tells its progress.
+struct Watched {
+    teller: Teller,
+    /// The last step that was reported.
+    doing: Mutex<String>,
+}
 
-impl Progress for Bar {
+impl Progress for Watched {
     fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
         if STOP.load(Ordering::Relaxed) {
             return Err(Cancelled);
         }
-        let position = (done.clamp(0.0, 1.0) * STEPS as f64) as u64;
-        if !self.0.is_hidden() && position >= self.0.position() {
-            self.0.set_message(step.to_owned());
-            self.0.set_position(position);
-        }
+        step.clone_into(&mut self.doing.lock().unwrap_or_else(PoisonError::into_inner));
+        self.teller.report(step, done);
         Ok(())
     }
 }
@@ -66,21 +68,28 @@ fn end() -> ! {
     std::process::exit(INTERRUPTED)
 }
 
-/// Runs `work` on `threads` threads; 0 for one per core.
+/// The number of threads given; 0 for one per core.
+fn threads(given: &ArgMatches) -> usize {
+    given.get_one::<i64>("threads").and_then(|n| usize::try_from(*n).ok()).unwrap_or(0)
+}
+
+/// Runs `work` on the file `from`, on the number of threads and with the way to tell progress that were given.
 pub fn run<T: Send>(
-    threads: usize,
+    given: &ArgMatches,
+    from: &Path,
     work: impl FnOnce(&dyn Progress) -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
+    let threads = threads(given);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()
         .map_err(|error| Failure::Other(format!("cannot start {threads} threads: {error}")))?;
-    let bar = if std::io::stderr().is_terminal() { ProgressBar::new(STEPS) } else { ProgressBar::hidden() };
-    if let Ok(style) = ProgressStyle::with_template("{msg:20} [{bar:40}] {percent:>3} % {eta}") {
-        bar.set_style(style.progress_chars("=> "));
+    let teller = Teller::new(Way::of(given, true), from.display().to_string());
+    let watched = Watched { teller, doing: Mutex::default() };
+    let result = pool.install(|| work(&watched));
+    match &result {
+        Ok(_) => watched.teller.end(&watched.doing.lock().unwrap_or_else(PoisonError::into_inner)),
+        Err(_) => watched.teller.fail(),
     }
-    let bar = Bar(bar);
-    let result = pool.install(|| work(&bar));
-    bar.0.finish_and_clear();
     result
 }

@@ -28,7 +28,7 @@ pub fn command() -> Command {
             "What is added to a frame's number in the name of its file: with 1000, frame 1 becomes 1001",
         ))
         .arg(arguments::parts("Draws only the part of this name; may be given several times"))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// What the options ask for.
@@ -93,7 +93,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     let home = project::home(&document, from);
     check_writable(&probed(output))?;
-    progress::run(arguments::threads(given), |bar| {
+    progress::run(given, from, |bar| {
         pipeline::render(&document, &home, &job, bar).map_err(|error| Failure::of(error, from))
     })?;
     let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };

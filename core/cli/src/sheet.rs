@@ -8,7 +8,6 @@ use rototoon::project::output::check_writable;
 use rototoon::project::seen::Made;
 use rototoon::project::write_whole;
 use rototoon::render::{Format, encode};
-use rototoon::scene::parameters::Stage;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -19,7 +18,7 @@ pub fn command() -> Command {
         )
         .arg(arguments::project())
         .arg(arguments::output("SHEET", "The picture to write, such as sheet.png"))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -32,7 +31,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
-    let sheet = progress::run(arguments::threads(given), |bar| {
+    let sheet = progress::run(given, from, |bar| {
         pipeline::sheet(&document, &home, bar).map_err(|error| Failure::of(error, from))
     })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;

@@ -15,7 +15,7 @@ pub fn command() -> Command {
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with curves"))
         .args(arguments::of_stage(Stage::Snap))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -26,7 +26,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
-    let document = progress::run(arguments::threads(given), |bar| {
+    let document = progress::run(given, from, |bar| {
         pipeline::snap(&mut document, &home, &options, bar)?;
         Ok(document)
     })?;

@@ -2,7 +2,7 @@
 //! them. It is not for people: `rototoon_batch::answer` says what it reads and prints.
 
 use crate::failure::{Failure, WRONG_USE, line};
-use crate::{progress, usage};
+use crate::{progress, tell, usage};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pictures::store;
 use rototoon_batch::answer::{Answer, processor_ms, words};
@@ -22,6 +22,7 @@ pub fn command() -> Command {
 
 /// Runs the subcommand, until standard input ends.
 pub fn run(given: &ArgMatches) -> Result<(), Failure> {
+    tell::to_batch();
     store::keep(given.get_one::<u64>("keep").copied().unwrap_or(0));
     for (index, text) in stdin().lock().lines().enumerate() {
         let text = text.map_err(|error| Failure::Other(format!("standard input: {error}")))?;

@@ -9,10 +9,8 @@ use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
-use rototoon::scene::parameters::Stage;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
-use std::path::Path;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -58,7 +56,7 @@ pub fn command() -> Command {
                 .default_missing_value("on")
                 .value_parser(["on", "off"]),
         )
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -76,11 +74,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let lines = Options { style, sensitivity, leave_out: arguments::left_out(given) };
     if let Some(keys) = given.get_many::<FrameNumber>("drawings") {
-        return on_keys(document, (from, to), &keys.copied().collect(), &lines, arguments::threads(given));
+        return on_keys(given, document, &keys.copied().collect(), &lines);
     }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let options = pipeline::TraceOptions { lines, keep_first: arguments::choice(given, "keep-first") == "on" };
-    let document = progress::run(arguments::threads(given), |bar| {
+    let document = progress::run(given, from, |bar| {
         pipeline::trace(&mut document, &home, frames, &options, None, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
@@ -93,14 +91,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 
 /// Traces drawings on keys.
 fn on_keys(
+    given: &ArgMatches,
     mut document: Document,
-    (from, to): (&Path, &Path),
     keys: &BTreeSet<FrameNumber>,
     options: &Options,
-    threads: usize,
 ) -> Result<(), Failure> {
+    let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let home = project::home(&document, from);
-    let (document, empty) = progress::run(threads, |bar| {
+    let (document, empty) = progress::run(given, from, |bar| {
         let empty = pipeline::trace_drawings(&mut document, &home, keys, options, bar)
             .map_err(|error| Failure::of(error, from))?;
         Ok((document, empty))

@@ -28,7 +28,7 @@ pub fn command() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .args(arguments::of_stage(Stage::Track))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// Runs the subcommand.
@@ -47,7 +47,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
-    let document = progress::run(arguments::threads(given), |bar| {
+    let document = progress::run(given, from, |bar| {
         let tracking = pipeline::track(&mut document, &home, &options, bar)?;
         say_ends(&document.scene, &tracking);
         Ok(document)

@@ -7,7 +7,6 @@ use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
-use rototoon::scene::parameters::Stage;
 use rototoon::tween::between::{Leaving, Options};
 
 /// The subcommand.
@@ -21,7 +20,7 @@ pub fn command() -> Command {
             "Says on which frame a breakdown, one more drawing, helps most: the frame that brings the in-betweens \
              nearest to the footage, or else the middle of the span that moves most",
         ))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// How strokes move.
@@ -78,7 +77,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let arcs = given.get_one::<f64>("arcs").copied().unwrap_or(Options::default().arcs);
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
-    let (document, notes, suggested) = progress::run(arguments::threads(given), |bar| {
+    let (document, notes, suggested) = progress::run(given, from, |bar| {
         let done = pipeline::tween(&mut document, &options, follow, bar).map_err(|error| Failure::of(error, from))?;
         let notes = [done.holding(), done.exchanging()];
         if !given.get_flag("suggest") {

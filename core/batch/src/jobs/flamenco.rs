@@ -3,14 +3,14 @@
 //! The manager shows the settings to whoever sends a job, and calls `compileJob`. Each task runs the worker command `exec`
 //! (Flamenco 3.0 and later).
 
-use super::{OnFailure, Places, words};
+use super::{OnFailure, Places, Tells, words};
 use serde_json::json;
 
 /// The text of the job type.
 pub fn job_type(failure: OnFailure) -> String {
     // These names are replaced by expressions of the script.
     let places = Places { manifest: "$manifest", output: "$output" };
-    let list = |shots: Option<&str>| list(&words(places, shots, failure));
+    let list = |shots: Option<&str>| list(&words(places, shots, failure, Tells::Lines));
     SCRIPT.replace("$SHOTS", &list(Some("$shots"))).replace("$PAGE", &list(None))
 }
 
@@ -73,7 +73,7 @@ mod tests {
     fn the_calls_are_those_of_the_other_engines() {
         let script = job_type(OnFailure::GoOn);
         assert!(script.contains(
-            r#"args: ["batch", settings.manifest, "-o", settings.output, "--shots", `${first}-${last}`, "--fine", "all"],"#
+            r#"args: ["batch", settings.manifest, "-o", settings.output, "--shots", `${first}-${last}`, "--fine", "all", "--progress", "lines"],"#
         ));
         assert!(
             script.contains(
@@ -81,6 +81,6 @@ mod tests {
             )
         );
         assert!(!script.contains("$SHOTS") && !script.contains("$PAGE"));
-        assert_eq!(job_type(OnFailure::Fail).matches(r#""--fine", "keys"]"#).count(), 2);
+        assert_eq!(job_type(OnFailure::Fail).matches(r#""--fine", "keys""#).count(), 2);
     }
 }

@@ -31,15 +31,25 @@ pub enum OnFailure {
     Fail,
 }
 
-/// The words of the call for some shots (`--shots A-B`), or for the page if `shots` is `None`.
+/// How a call tells an engine how far it is: in the engine's own lines where it knows some, else in lines for its log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tells {
+    /// `openjd_progress: 42.0` on standard output, which the engine shows as the progress of the task.
+    Openjd,
+    /// Lines on standard error.
+    Lines,
+}
+
+/// The words of the call for some shots (`--shots A-B`), or for the page if `shots` is `None`, which takes a moment and tells nothing.
 ///
 /// The call for the page has the status of the whole batch.
-pub fn words(places: Places, shots: Option<&str>, failure: OnFailure) -> Vec<String> {
+pub fn words(places: Places, shots: Option<&str>, failure: OnFailure, tells: Tells) -> Vec<String> {
     let mut words: Vec<&str> = vec!["batch", places.manifest, "-o", places.output];
     match shots {
         Some(shots) => {
             let fine = if failure == OnFailure::GoOn { "all" } else { "keys" };
-            words.extend(["--shots", shots, "--fine", fine]);
+            let way = if tells == Tells::Openjd { "openjd" } else { "lines" };
+            words.extend(["--shots", shots, "--fine", fine, "--progress", way]);
         }
         None => words.extend(["--summary", "--fine", "keys"]),
     }

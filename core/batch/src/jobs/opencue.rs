@@ -2,7 +2,7 @@
 //!
 //! An outline's layer is a list of commands, one for each chunk of shots. The layer `page` waits for all of them.
 
-use super::{OnFailure, Places, words};
+use super::{OnFailure, Places, Tells, words};
 use serde_json::json;
 
 /// The text of the script for a number of shots. `chunk` is the number of shots that a command gets.
@@ -13,8 +13,8 @@ pub fn outline(name: &str, shots: usize, chunk: usize, failure: OnFailure) -> St
         .replace("$NAME", &json!(job_name(name)).to_string())
         .replace("$COUNT", &shots.to_string())
         .replace("$CHUNK", &chunk.max(1).to_string())
-        .replace("$SHOTS", &list(&words(places, Some("$shots"), failure)))
-        .replace("$PAGE", &list(&words(places, None, failure)))
+        .replace("$SHOTS", &list(&words(places, Some("$shots"), failure, Tells::Lines)))
+        .replace("$PAGE", &list(&words(places, None, failure, Tells::Lines)))
 }
 
 /// Letters, digits, `_` and `-`: OpenCue makes folders of it.
@@ -88,13 +88,13 @@ mod tests {
         let script = outline("night \"7\"", 20, 6, OnFailure::GoOn);
         for line in [
             "NAME = \"rototoon_night__7_\"\nSHOTS, CHUNK = 20, 6\n",
-            r#"[settings.program, "batch", settings.manifest, "-o", settings.output, "--shots", f"{first}-{min(first + CHUNK - 1, SHOTS)}", "--fine", "all"]"#,
+            r#"[settings.program, "batch", settings.manifest, "-o", settings.output, "--shots", f"{first}-{min(first + CHUNK - 1, SHOTS)}", "--fine", "all", "--progress", "lines"]"#,
             r#"command=[settings.program, "batch", settings.manifest, "-o", settings.output, "--summary", "--fine", "keys"])"#,
         ] {
             assert!(script.contains(line), "{line}\n{script}");
         }
         assert!(!script.contains('$'));
         let strict = outline("night", 20, 6, OnFailure::Fail);
-        assert_eq!(strict.matches(r#""--fine", "keys"]"#).count(), 2, "{strict}");
+        assert_eq!(strict.matches(r#""--fine", "keys""#).count(), 2, "{strict}");
     }
 }

@@ -1,9 +1,9 @@
 //! A job template for Open Job Description, specification `jobtemplate-2023-09` with the extension `TASK_CHUNKING`.
 //!
 //! The engine divides the places of the shots into chunks and starts the program for each. The step `Page` waits for all
-//! of them.
+//! of them. The program says how far it is in lines `openjd_progress: 42.0`, a percentage, and `openjd_status: TEXT` on standard output.
 
-use super::{OnFailure, Places, words};
+use super::{OnFailure, Places, Tells, words};
 use serde_json::{Value, json};
 
 /// Greatest number of letters of a job's name.
@@ -20,8 +20,7 @@ pub fn template(
     output: Option<&str>,
 ) -> Value {
     let places = Places { manifest: "{{Param.Manifest}}", output: "{{Param.Output}}" };
-    let run =
-        |shots: Option<&str>| json!({"onRun": {"command": "{{Param.Program}}", "args": words(places, shots, failure)}});
+    let run = |shots: Option<&str>| json!({"onRun": {"command": "{{Param.Program}}", "args": words(places, shots, failure, Tells::Openjd)}});
     let path = |name: &str, kind: &str, flow: &str, default: Option<&str>, description: &str| {
         let mut parameter =
             json!({"name": name, "type": "PATH", "objectType": kind, "dataFlow": flow, "description": description});
@@ -73,7 +72,10 @@ mod tests {
         assert_eq!((default(0), default(1)), (Some(&json!("m.json")), None));
         let args = |step: usize| template["steps"][step]["script"]["actions"]["onRun"]["args"].clone();
         let common = ["batch", "{{Param.Manifest}}", "-o", "{{Param.Output}}"];
-        assert_eq!(args(0), json!([&common[..], &["--shots", "{{Task.Param.Shot}}", "--fine", "all"]].concat()));
+        assert_eq!(
+            args(0),
+            json!([&common[..], &["--shots", "{{Task.Param.Shot}}", "--fine", "all", "--progress", "openjd"]].concat())
+        );
         assert_eq!(args(1), json!([&common[..], &["--summary", "--fine", "keys"]].concat()));
         let strict = super::template("night", (20, 3), OnFailure::Fail, None, None);
         assert_eq!(strict["steps"][0]["script"]["actions"]["onRun"]["args"][7], "keys", "{strict}");

@@ -10,7 +10,6 @@ use rototoon::project::Document;
 use rototoon::project::clips::Clips;
 use rototoon::project::output::check_writable;
 use rototoon::reshape::puppet::Options;
-use rototoon::scene::parameters::Stage;
 use rototoon::scene::{Clip, FrameNumber};
 use std::path::{Path, PathBuf};
 
@@ -65,7 +64,7 @@ pub fn command() -> Command {
         )
         .arg(mirror())
         .arg(arguments::output("OUT", "The document to write, with tracks, depths and strokes on every frame"))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// `--mirror auto|on|off`.
@@ -109,7 +108,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (clip, rate) = pipeline::at_rate_of(footage, clip, clips.fps);
     let fps = footage.fps;
     let job = ReshapeJob { clip: &clip, fps, rest, over, chains, mirror, options, points: Default::default() };
-    let (document, made) = progress::run(arguments::threads(given), |bar| {
+    let (document, made) = progress::run(given, from, |bar| {
         let made = pipeline::reshape(&mut document, &job, bar).map_err(|error| failed(error, from))?;
         Ok((document, made))
     })?;

@@ -9,7 +9,6 @@ use rototoon::pipeline;
 use rototoon::project::Inputs;
 use rototoon::project::clips::load_key_poses;
 use rototoon::project::output::check_writable;
-use rototoon::scene::parameters::Stage;
 use rototoon::style::{KeyPose, Options, Pace, Preset, Request};
 use std::path::PathBuf;
 
@@ -33,7 +32,7 @@ pub fn command() -> Command {
         .arg(on_or_off("limb-lengths", "Whether limbs keep within the lengths of the style's own clips"))
         .arg(on_or_off("contacts", "Whether feet that stand in the content's clip stay where they stand"))
         .arg(arguments::output("OUT", "The file to write: one clip with the standard deviation of each key point"))
-        .args(arguments::of_stage(Stage::Run))
+        .args(arguments::of_run())
 }
 
 /// What is translated.
@@ -112,7 +111,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         keep_contacts: text("contacts") == "on",
     };
     let request = Request { style: text("style"), motion: text("motion"), content: text("content"), keys: &keys };
-    let (made, grounds) = progress::run(arguments::threads(given), |bar| {
+    let (made, grounds) = progress::run(given, from, |bar| {
         pipeline::translate_and_judge(&clips, &request, &options, bar).map_err(|error| Failure::of(error, from))
     })?;
     for note in grounds.notes() {

@@ -14,6 +14,7 @@ mod fill;
 mod fit;
 mod inputs;
 mod plates;
+mod progress;
 mod season;
 mod seen;
 mod style;
