@@ -22,6 +22,9 @@ const LOOK: Duration = Duration::from_millis(100);
 /// Greatest number of bytes of messages that are kept.
 const MOST_MESSAGES: usize = 64 << 10;
 
+/// SIGHUP, SIGINT and SIGTERM, which ask a program to end.
+const INTERRUPTS: [i32; 3] = [1, 2, 15];
+
 /// How a step ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ended {
@@ -41,6 +44,8 @@ pub struct Ended {
     pub processor_seconds: f64,
     /// Whether `stop` ended it.
     pub stopped: bool,
+    /// Whether somebody else asked it to end, by a signal such as that of Ctrl-C.
+    pub interrupted: bool,
 }
 
 /// A program that takes steps. It ends when this is dropped.
@@ -66,6 +71,21 @@ struct Heard {
 enum End {
     Answer(Answer),
     Gone(ExitStatus),
+}
+
+impl End {
+    /// Whether one of the signals that ask a program to end was its end.
+    fn is_interrupted(&self) -> bool {
+        match self {
+            Self::Answer(answer) => INTERRUPTS.iter().any(|signal| i32::from(answer.status) == 128 + signal),
+            #[cfg(unix)]
+            Self::Gone(status) => {
+                std::os::unix::process::ExitStatusExt::signal(status).is_some_and(|signal| INTERRUPTS.contains(&signal))
+            }
+            #[cfg(not(unix))]
+            Self::Gone(_) => false,
+        }
+    }
 }
 
 impl Program {
@@ -117,6 +137,7 @@ impl Program {
         let Heard { said, end, asked, held } = self.listen(stop, at)?;
         let text = String::from_utf8_lossy(&said);
         let messages = text.lines().filter(|line| Answer::read(line).is_none()).map(str::to_owned).collect();
+        let interrupted = end.is_interrupted();
         let (code, description, answer) = match end {
             End::Answer(answer) => (Some(i32::from(answer.status)), format!("exit status: {}", answer.status), answer),
             // It has not told what it held.
@@ -131,6 +152,7 @@ impl Program {
             peak_bytes: answer.peak_bytes,
             kept_bytes: answer.kept_bytes,
             stopped: asked,
+            interrupted: interrupted && !asked,
         })
     }
 
@@ -292,6 +314,20 @@ mod tests {
             assert_eq!(ended.peak_bytes > 0, messages == 1 && cfg!(target_os = "linux"));
             assert_eq!((ended.status, ended.messages.len()), (None, messages));
             assert!(ended.description.contains('9'), "{}", ended.description);
+        }
+    }
+
+    #[test]
+    fn a_program_that_somebody_stopped_did_not_fail() {
+        for (end, interrupted) in [
+            ("echo 'step: 1 status=143 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a", true),
+            ("kill -TERM $$", true),
+            ("kill -HUP $$", true),
+            ("echo 'step: 1 status=1 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a", false),
+            ("kill -KILL $$", false),
+        ] {
+            let ended = step(&mut shell(&format!("read a; {end}")));
+            assert_eq!((ended.interrupted, ended.stopped), (interrupted, false), "{end}");
         }
     }
 

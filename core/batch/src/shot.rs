@@ -15,9 +15,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// What the names of files begin with until they enter the record.
 const NEW: &str = ".new-";
+/// Time in which a signal reaches all processes of a group.
+const SOON: Duration = Duration::from_millis(500);
 
 /// What shots share.
 pub struct Worker<'a> {
@@ -218,13 +222,13 @@ impl Work<'_> {
         }
         self.clear()?;
         let ended = self.start(index, step, document)?;
-        if ended.stopped {
+        if ended.stopped || (ended.interrupted && self.is_stopped_soon()) {
             self.clear()?;
             return Err(ShotError::Stopped);
         }
         if ended.status != Some(0) {
             self.clear()?;
-            if ended.status.is_none() {
+            if ended.status.is_none() && !ended.interrupted {
                 self.record.ended_bytes = self.record.ended_bytes.max(ended.peak_bytes);
             }
             self.tell(step, StepOutcome::Failed, Some(&ended));
@@ -233,6 +237,15 @@ impl Work<'_> {
         self.finish(index, step, reads, &ended)?;
         self.tell(step, StepOutcome::Done, Some(&ended));
         Ok(())
+    }
+
+    /// Whether the batch is asked to end now or in a moment. A signal to a group of processes, such as Ctrl-C, may reach the program of the steps first.
+    fn is_stopped_soon(&self) -> bool {
+        let start = Instant::now();
+        while !(self.worker.stop)() && start.elapsed() < SOON {
+            sleep(SOON / 20);
+        }
+        (self.worker.stop)()
     }
 
     /// Whether a step was done with the same input, and its files are as they were written. The manifest may have been edited

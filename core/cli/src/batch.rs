@@ -1,13 +1,14 @@
 //! `rototoon batch`: works through many shots.
 
 use crate::failure::{Failure, line};
+use crate::stop::{self, Counted};
 use crate::tell::{self, Teller, Way};
-use crate::{arguments, export, progress, render};
+use crate::{arguments, export, render};
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::memory::Bytes;
 use rototoon::project::Inputs;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{Cancelled, FrameNumber};
 use rototoon_batch::budget::Budget;
 use rototoon_batch::manifest::{Manifest, Shot};
 use rototoon_batch::names::{PAGE, REPORT, SUMMARY};
@@ -163,7 +164,10 @@ fn work(
     line("note", &format!("{all} {shots_word}, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));
     let program =
         std::env::current_exe().map_err(|error| Failure::Other(format!("cannot find this program: {error}")))?;
-    let teller = Teller::new(Way::of(given, false), path.display().to_string());
+    let name = path.display().to_string();
+    stop::begin(name.clone());
+    stop::done(0, all, Counted::Shots);
+    let teller = Teller::new(Way::of(given, false), name);
     let options = Options {
         folder: folder.to_owned(),
         shots,
@@ -172,15 +176,19 @@ fn work(
         memory,
         program,
         report,
-        stop: &progress::stopped,
+        stop: &|| stop::signal().is_some(),
         waits: &|shot| line("note", &format!("{}: waiting for another worker that has it", shot.name)),
-        told: &|shot, outcome, ended| tell(shot, outcome, ended, all),
+        told: &|shot, outcome, ended| {
+            stop::done(ended, all, Counted::Shots);
+            tell(shot, outcome, ended, all);
+        },
         at: &|share, doing| teller.report(doing, share),
     };
     let outcomes = run::run(manifest, &options).map_err(|error| match error {
         BatchError::Write(error) => Failure::Write(error),
-        BatchError::Stopped => Failure::Other(error.to_string()),
+        BatchError::Stopped => Cancelled.into(),
     })?;
+    stop::worked();
     teller.end(&format!("{all} {shots_word}"));
     Ok(outcomes)
 }

@@ -2,6 +2,7 @@
 
 use rototoon::pipeline::PipelineError;
 use rototoon::project::{LoadError, OverwritesInput, SaveError, WriteError};
+use rototoon::scene::Cancelled;
 use std::io::Write;
 use std::path::Path;
 
@@ -36,6 +37,9 @@ pub enum Failure {
     /// Any other error.
     #[error("{0}")]
     Other(String),
+    /// The program was asked to end.
+    #[error(transparent)]
+    Stopped(#[from] Cancelled),
     /// The subcommand has already printed its errors.
     #[error("failed")]
     Reported,
@@ -55,6 +59,12 @@ impl Failure {
             }
             other => other.into(),
         }
+    }
+
+    /// Whether the work was cancelled, and nothing else is wrong.
+    pub fn is_cancelled(&self) -> bool {
+        // It is within errors of all stages, and these add the name of a file before it.
+        self.to_string().ends_with(&Cancelled.to_string())
     }
 
     /// Prints the errors, one per line, and returns the exit status.

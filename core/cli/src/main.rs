@@ -2,14 +2,16 @@
 //!
 //! - [`arguments`]: options made from the core's list of parameters
 //! - [`project`]: reads and writes documents
-//! - [`progress`]: threads and Ctrl-C
+//! - [`progress`]: threads of long work
+//! - [`stop`]: Ctrl-C and the signals that end the program in order
 //! - [`tell`]: how progress is told
 //! - [`failure`]: errors and exit statuses
 //! - [`track`], [`snap`], [`trace`], [`fill`], [`recolour`], [`render`], [`sheet`], [`absent`], [`export`], [`import`], [`conform`], [`check`], [`fit`], [`tween`], [`style`], [`batch`], [`job`], [`steps`]: the
 //!   subcommands
 //! - [`usage`]: the memory that the program takes
 //!
-//! The exit status is 0 for success, 1 for failure, 2 for wrong arguments, and 3 for a batch whose shots want keys.
+//! The exit status is 0 for success, 1 for failure, 2 for wrong arguments, and 3 for a batch whose shots want keys. A command that a signal
+//! stopped ends by that signal.
 
 #![forbid(unsafe_code)]
 
@@ -32,6 +34,7 @@ mod sheet;
 mod signals;
 mod snap;
 mod steps;
+mod stop;
 mod style;
 mod tell;
 mod trace;
@@ -87,14 +90,21 @@ fn execute(matches: &ArgMatches) -> u8 {
     let known = subcommands().into_iter().find(|(command, _)| command.get_name() == name);
     match known.map_or(Ok(()), |(_, run)| run(arguments)) {
         Ok(()) => 0,
-        Err(failure) => failure.report(),
+        Err(failure) => match stop::signal() {
+            Some(signal) => stop::status(failure, signal),
+            None => failure.report(),
+        },
     }
 }
 
 fn main() -> ExitCode {
     let matches = program().get_matches();
-    ExitCode::from(match progress::catch_signals() {
+    let status = match stop::catch_signals() {
         Ok(()) => execute(&matches),
         Err(failure) => failure.report(),
-    })
+    };
+    match stop::signal() {
+        Some(signal) if status != 0 => stop::end(signal),
+        _ => ExitCode::from(status),
+    }
 }

@@ -2,9 +2,10 @@
 //! them. It is not for people: `rototoon_batch::answer` says what it reads and prints.
 
 use crate::failure::{Failure, WRONG_USE, line};
-use crate::{progress, tell, usage};
+use crate::{stop, tell, usage};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pictures::store;
+use rototoon::scene::Cancelled;
 use rototoon_batch::answer::{Answer, processor_ms, words};
 use std::io::{BufRead, Write, stderr, stdin};
 
@@ -41,8 +42,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         };
         // At once, so that nothing comes between.
         let _ = stderr().write_all((answer.line() + "\n").as_bytes());
-        if progress::stopped() {
-            break;
+        if stop::signal().is_some() {
+            return Err(Cancelled.into());
         }
     }
     Ok(())

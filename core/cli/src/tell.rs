@@ -36,6 +36,11 @@ pub fn to_batch() {
     FOR_BATCH.store(true, Ordering::Relaxed);
 }
 
+/// Whether this program takes steps for a batch.
+pub fn is_for_batch() -> bool {
+    FOR_BATCH.load(Ordering::Relaxed)
+}
+
 /// How progress is told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
@@ -56,7 +61,7 @@ pub enum Way {
 impl Way {
     /// The way that was asked for. `has_bar` says whether the command shows a bar on a terminal.
     pub fn of(given: &ArgMatches, has_bar: bool) -> Self {
-        if FOR_BATCH.load(Ordering::Relaxed) {
+        if is_for_batch() {
             return Self::Batch;
         }
         match given.get_one::<String>("progress").map(String::as_str) {

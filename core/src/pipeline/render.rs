@@ -10,6 +10,7 @@ use crate::render::{self, Format};
 use crate::scene::{Footage, FrameNumber, FrameSource, Progress, Scene};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A render job after its check against the document.
 struct Rendering {
@@ -40,15 +41,20 @@ pub fn render(
 ) -> Result<Vec<PathBuf>, PipelineError> {
     let sequence = frames(document, folder)?;
     let plan = plan(document, &sequence, job)?;
-    let (mut done, mut gaps) = (0, Vec::new());
+    let (mut done, mut gaps, whole) = (0, Vec::new(), AtomicUsize::new(0));
     progress.report("Rendering", 0.0)?;
+    progress.written(0, plan.frames.len());
     let footage = &plan.size;
     let parts = plan.parts.as_ref().map_or(document.scene.parts.len(), Vec::len);
     let at_once = memory::frames_at_once(footage, &job.picture, parts, rayon::current_num_threads().max(1))?;
     for batch in plan.frames.chunks(at_once) {
         let results: Vec<Result<(), PipelineError>> = batch
             .par_iter()
-            .map(|(frame, path)| Ok(write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?))
+            .map(|(frame, path)| {
+                write_whole(path, &picture(document, &sequence, job, &plan, *frame)?)?;
+                progress.written(whole.fetch_add(1, Ordering::Relaxed) + 1, plan.frames.len());
+                Ok(())
+            })
             .collect();
         for ((frame, _), result) in batch.iter().zip(results) {
             match result {

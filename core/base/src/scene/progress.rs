@@ -16,6 +16,10 @@ pub trait Progress: Sync {
     ///
     /// [`Cancelled`] stops the work.
     fn report(&self, step: &str, done: f64) -> Result<(), Cancelled>;
+
+    /// So many of the files that the work writes are whole, of so many. Files of work that is cancelled stay, so whoever cancels it can say how far it came.
+    /// Calls of several threads may come in another order than that of the numbers.
+    fn written(&self, _files: usize, _of: usize) {}
 }
 
 /// Ignores reports and never cancels.

@@ -17,6 +17,8 @@ mod plates;
 mod progress;
 mod season;
 mod seen;
+#[cfg(unix)]
+mod stops;
 mod style;
 mod style_corrections;
 mod style_guesses;
