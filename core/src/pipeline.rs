@@ -48,7 +48,7 @@ pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
 pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, fill};
-pub use gaps::without_file;
+pub use gaps::held_gaps;
 pub use guesses::{guessed_translation, guesses};
 pub use outdated::outdated;
 pub use outside::outside;

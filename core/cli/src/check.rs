@@ -27,16 +27,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let path = arguments::path(given, "project");
     let document = Document::load(path)?;
     let home = project::home(&document, path);
-    let problems = progress::run(given, path, |bar| Ok(pipeline::check(&document, &home, bar)?))?;
+    let problems = progress::run(given, path, |bar| {
+        pipeline::check(&document, &home, bar).map_err(|error| Failure::of(error, path))
+    })?;
     if let Some(outside) = outside(&document.scene.footage.pattern) {
         line("note", &format!("{}: footage.pattern: {outside}", path.display()));
     }
-    let held = pipeline::without_file(&document, &home)?;
-    if held > 0 {
-        let (first, last) = (i64::from(document.scene.footage.first), i64::from(document.scene.footage.last));
-        let told = format!("{held} of {} frames have no file and show that of the frame before", last - first + 1);
-        line("note", &format!("{}: footage.gaps: {told}", path.display()));
-    }
+    project::say_gaps(&document, path)?;
     for problem in problems.iter() {
         let kind = if problem.severity == Severity::Error { "error" } else { "warning" };
         line(kind, &format!("{}: {problem}", path.display()));
@@ -53,7 +50,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         line("note", &format!("{}: {beyond}", path.display()));
     }
     if given.get_flag("drawings") {
-        let drawings = progress::run(given, path, |bar| Ok(pipeline::held(&document, &home, bar)?))?;
+        let drawings = progress::run(given, path, |bar| {
+            pipeline::held(&document, &home, bar).map_err(|error| Failure::of(error, path))
+        })?;
         line("note", &format!("{}: {}", path.display(), listed(&drawings)));
     }
     line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));

@@ -1,6 +1,6 @@
 //! `rototoon conform`: moves a document to footage that was delivered again.
 
-use crate::failure::{Failure, line};
+use crate::failure::{Failure, line, named};
 use crate::{arguments, progress, project, unchanged};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::conform::Given;
@@ -111,7 +111,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 fn explained(error: PipelineError, from: &Path) -> Failure {
     match error {
         PipelineError::Footage { which: "old", .. } => Failure::Other(format!(
-            "{error}\nif the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones"
+            "{}\nif the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones",
+            named(&error, from)
         )),
         other => Failure::of(other, from),
     }

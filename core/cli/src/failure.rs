@@ -50,14 +50,13 @@ pub enum Failure {
 
 impl Failure {
     /// The failure of work on a file. It names the file, and the option that does not fit it.
-    pub fn of(error: PipelineError, from: &Path) -> Self {
-        let from = from.display();
+    pub fn of(error: PipelineError, path: &Path) -> Self {
+        let from = path.display();
         match error {
             PipelineError::Option { option, reason } => Self::Use(format!("{from}: --{option}: {reason}")),
-            PipelineError::Field(_) | PipelineError::Style(_) | PipelineError::Tween(_) | PipelineError::Fit { .. } => {
-                Self::Other(format!("{from}: {error}"))
-            }
-            other => other.into(),
+            // These name the file to write, or are told in another way.
+            PipelineError::Request(_) | PipelineError::Write(_) | PipelineError::Cancelled(_) => error.into(),
+            other => Self::Other(named(&other, path)),
         }
     }
 
@@ -78,6 +77,12 @@ impl Failure {
         let request = matches!(self, Self::Use(_) | Self::Overwrites(_) | Self::Pipeline(PipelineError::Request(_)));
         if request { WRONG_USE } else { FAILED }
     }
+}
+
+/// An error with the name of the file that was worked on before each of its lines, because a log may have many files.
+pub fn named(error: &PipelineError, from: &Path) -> String {
+    let lines = error.to_string();
+    lines.lines().map(|text| format!("{}: {text}", from.display())).collect::<Vec<_>>().join("\n")
 }
 
 /// Prints a line to standard error. A closed standard error is ignored.

@@ -49,6 +49,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             pipeline::fill(&mut document, &home, frames, &options, bar).map_err(|error| Failure::of(error, from))?;
         Ok((document, report))
     })?;
+    project::say_gaps(&document, from)?;
     project::save(document, from, to)?;
     report.lines().iter().for_each(|text| line("note", text));
     Ok(())

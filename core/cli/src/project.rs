@@ -39,6 +39,13 @@ fn warned(path: &Path, needs_part: impl FnOnce(&Document) -> bool) -> Result<Doc
     Ok(document)
 }
 
+/// Says which frames of a document that was read from `path` have no file and show the one before.
+pub fn say_gaps(document: &Document, path: &Path) -> Result<(), Failure> {
+    let gaps = pipeline::held_gaps(document, &home(document, path)).map_err(|error| Failure::of(error, path))?;
+    gaps.iter().for_each(|told| line("note", &format!("{}: {told}", path.display())));
+    Ok(())
+}
+
 /// The folder of a file.
 pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))

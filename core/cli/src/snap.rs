@@ -27,9 +27,10 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     project::inputs(&document, from).check(to)?;
     check_writable(to)?;
     let document = progress::run(given, from, |bar| {
-        pipeline::snap(&mut document, &home, &options, bar)?;
+        pipeline::snap(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
+    project::say_gaps(&document, from)?;
     let scene = &document.scene;
     for warning in [pipeline::untracked(scene), pipeline::outdated(scene)].into_iter().flatten() {
         line("warning", &format!("{}: {warning}", from.display()));

@@ -82,6 +82,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         pipeline::trace(&mut document, &home, frames, &options, None, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)
     })?;
+    project::say_gaps(&document, from)?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
     let told = pipeline::traced_lines(&traced, &document.scene.footage);
     project::save(document, from, to)?;

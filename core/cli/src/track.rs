@@ -48,10 +48,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let document = progress::run(given, from, |bar| {
-        let tracking = pipeline::track(&mut document, &home, &options, bar)?;
+        let tracking =
+            pipeline::track(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
         say_ends(&document.scene, &tracking);
         Ok(document)
     })?;
+    project::say_gaps(&document, from)?;
     let (report, beyond) = (Report::of(&document.scene), pipeline::beyond(&document.scene));
     project::save(document, from, to)?;
     if let Some(path) = written {

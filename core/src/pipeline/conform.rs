@@ -46,6 +46,8 @@ pub struct Conformed {
     pub conform: Conform,
     /// What did not simply go with its drawing.
     pub notes: Vec<Note>,
+    /// What was added to the numbers of frames, where no picture was compared.
+    pub offset: Option<FrameNumber>,
 }
 
 /// Moves a document in `folder` to new footage. It runs on the caller's rayon pool, and the result does not depend on the pool.
@@ -71,7 +73,7 @@ pub fn conform(
     };
     let failed = |error: crate::project::FieldError| PipelineError::Field(error.to_string());
     let (document, notes) = document.conformed(&conform, footage).map_err(failed)?;
-    Ok(Conformed { document, conform, notes })
+    Ok(Conformed { document, conform, notes, offset: new.offset })
 }
 
 /// The new footage: its files say the frames and the size.
@@ -130,13 +132,16 @@ fn of_footage(which: &'static str, error: PipelineError) -> PipelineError {
 }
 
 impl Conformed {
-    /// What is told of frames and places, a line each.
+    /// What is told of frames and places, a line each. Where no picture was compared, nothing is said of what pictures show.
     pub fn told(&self) -> Vec<String> {
         let Placement { scale, shift } = self.conform.placement;
-        let place = match self.conform.placement.is_same() {
-            true => "the pictures lie on each other".to_owned(),
-            false => format!("the old picture is scaled by {scale:.6} and moved by {:.2}, {:.2} px", shift.x, shift.y),
-        };
+        let moved = format!("the old picture is scaled by {scale:.6} and moved by {:.2}, {:.2} px", shift.x, shift.y);
+        let same_place = self.conform.placement.is_same();
+        if let Some(by) = self.offset {
+            let added = format!("{by} is added to the numbers of frames; no pictures were compared");
+            return std::iter::once(added).chain((!same_place).then_some(moved)).chain(self.renumbered()).collect();
+        }
+        let place = if same_place { "the pictures lie on each other".to_owned() } else { moved };
         let sources = self.conform.frames.sources();
         let of = |kind: fn(&Source) -> bool| -> Vec<FrameNumber> {
             sources.iter().filter(|(_, source)| kind(source)).map(|(frame, _)| *frame).collect()
@@ -149,6 +154,20 @@ impl Conformed {
             ("new", of(|source| *source == Source::New)),
             ("gone from the old footage", self.conform.frames.removed().collect()),
         ];
+        let filled = lists.into_iter().filter(|(_, frames)| !frames.is_empty());
+        lines.extend(filled.map(|(what, frames)| format!("{what}: {}", super::report::runs(&frames))));
+        lines
+    }
+
+    /// What is told of frames that have other numbers.
+    fn renumbered(&self) -> Vec<String> {
+        let frames = &self.conform.frames;
+        let (all, alone) =
+            (frames.sources().len(), frames.sources().iter().filter(|(_, source)| **source == Source::New));
+        let alone: Vec<FrameNumber> = alone.map(|(frame, _)| *frame).collect();
+        let removed: Vec<FrameNumber> = frames.removed().collect();
+        let mut lines = vec![format!("{} of {all} frames are frames of the old footage", all - alone.len())];
+        let lists = [("not in the old footage", alone), ("not in the new footage, by the old numbers", removed)];
         let filled = lists.into_iter().filter(|(_, frames)| !frames.is_empty());
         lines.extend(filled.map(|(what, frames)| format!("{what}: {}", super::report::runs(&frames))));
         lines

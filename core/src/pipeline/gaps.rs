@@ -6,6 +6,7 @@
 //! Limits: a file that ends too early, or has other damage behind its head, is found when it is decoded. `check` decodes all frames.
 
 use super::PipelineError;
+use super::report::runs;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::scene::{FrameError, FrameNumber, Scene};
@@ -28,15 +29,21 @@ pub(super) fn none(sequence: &Sequence, frames: impl IntoIterator<Item = FrameNu
     if gaps.is_empty() { Ok(()) } else { Err(PipelineError::Gaps { gaps, drawn: None }) }
 }
 
-/// How many frames of a document in `folder` have no file and show that of an earlier frame, because the footage says that gaps are held.
+/// Says which frames of a document in `folder` have no file and show that of an earlier frame, because the footage says that gaps are held. `None` if none do.
+/// What is made on such a frame is as good as the drawing that it shows: the artist may have meant another one.
 ///
 /// # Errors
 ///
 /// An invalid pattern.
-pub fn without_file(document: &Document, folder: &Path) -> Result<usize, PipelineError> {
+pub fn held_gaps(document: &Document, folder: &Path) -> Result<Option<String>, PipelineError> {
     let footage = &document.scene.footage;
     let sequence = Sequence::keeping(footage, folder, 0)?;
-    Ok((footage.first..=footage.last).filter(|&frame| sequence.shown(frame) != frame).count())
+    let held: Vec<FrameNumber> =
+        (footage.first..=footage.last).filter(|&frame| sequence.shown(frame) != frame).collect();
+    let (count, all) = (held.len(), i64::from(footage.last) - i64::from(footage.first) + 1);
+    let have = if count == 1 { "frame has no file and shows" } else { "frames have no file and show" };
+    let told = || format!("footage.gaps: {count} of {all} {have} that of the frame before: {}", runs(&held));
+    Ok((count > 0).then(told))
 }
 
 /// The frames between the keys of parts, which tracking looks at. How far a part with one key is followed is not known before.

@@ -77,6 +77,22 @@ fn a_document_written_elsewhere_finds_its_frames() {
 }
 
 #[test]
+fn tracking_names_the_frames_that_have_no_file_and_are_held() {
+    let cartoon = Cartoon::new();
+    let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
+    [2, 3, 5].into_iter().for_each(|frame| fs::remove_file(cartoon.frame(frame)).unwrap());
+    let mut document = read(&project);
+    document["footage"]["gaps"] = json!("held");
+    fs::write(&project, document.to_string()).unwrap();
+    let told = "footage.gaps: 3 of 7 frames have no file and show that of the frame before: 2-3, 5";
+    for words in [["track", text(&project), "-o", text(&out)], ["snap", text(&out), "-o", text(&out)]] {
+        let said = good(&words);
+        let from = words[1];
+        assert!(said.lines().any(|line| line == format!("note: {from}: {told}")), "{said}");
+    }
+}
+
+#[test]
 fn missing_and_unreadable_frames_are_named() {
     let cartoon = Cartoon::new();
     let (project, out) = (cartoon.keyed(), cartoon.path("out.json"));
@@ -98,7 +114,8 @@ fn missing_and_unreadable_frames_are_named() {
     }
     let error = bad(&["track", text(&project), "-o", text(&out)], 1);
     // The file of frame 5 is damaged behind its head, so it would be found later.
-    let named: Vec<_> = error.lines().filter_map(|line| line.strip_prefix("error: frame ")?.get(..2)).collect();
+    let begin = format!("error: {}: frame ", project.display());
+    let named: Vec<_> = error.lines().filter_map(|line| line.strip_prefix(&begin)?.get(..2)).collect();
     assert_eq!(named, ["2:", "3:", "4:"], "{error}");
     assert!(!out.exists());
     // Snapping needs only the frames of the keys, and these exist.

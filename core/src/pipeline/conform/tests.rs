@@ -86,6 +86,20 @@ fn an_offset_needs_no_old_pictures() {
     let conformed = conform(&document(), folder.path(), &asked, &Silent).unwrap();
     let scene = &conformed.document.scene;
     assert_eq!((scene.footage.fps, scene.parts[0].keys[&106][0]), (25.0, Point::new(97.5, 54.0)));
+    // It compared nothing, so nothing is said of what pictures show.
+    let size = "the old picture is scaled by 1.500000 and moved by 0.00, 0.00 px";
+    let added = "100 is added to the numbers of frames; no pictures were compared";
+    assert_eq!(conformed.told(), [added, size, "6 of 6 frames are frames of the old footage"]);
+    let asked = NewFootage { offset: Some(99), frames: Some(101..=106), ..new(folder.path()) };
+    let asked = NewFootage { given: Given { scale: Some(1.0), shift: None }, ..asked };
+    let told = conform(&document(), folder.path(), &asked, &Silent).unwrap().told();
+    let expected = [
+        "99 is added to the numbers of frames; no pictures were compared",
+        "5 of 6 frames are frames of the old footage",
+        "not in the old footage: 106",
+        "not in the new footage, by the old numbers: 1",
+    ];
+    assert_eq!(told, expected);
     let error = conform(&document(), folder.path(), &new(folder.path()), &Silent).unwrap_err();
     assert!(matches!(error, PipelineError::Footage { which: "old", .. }), "{error}");
 }
