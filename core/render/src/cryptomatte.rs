@@ -14,10 +14,13 @@
 //! posters, 2015. The Cryptomatte specification, version 1.2.
 
 use super::form;
-use super::layers::{Attribute, Channel};
+use super::layers::Attribute;
+use super::streamed::Line;
 use super::visible::{Share, Visible};
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::io::Cursor;
+use std::rc::Rc;
 
 /// Name of the layers, without their number.
 pub const LAYER: &str = form::CRYPTOMATTE;
@@ -72,32 +75,61 @@ pub fn attributes<'a>(names: impl Iterator<Item = &'a str>) -> Result<Vec<Attrib
     ])
 }
 
-/// The channels of all ranks, `width` × `height` values each. `names` are those of the indices in `visible`.
-pub fn channels(names: &[&str], visible: &Visible) -> Vec<Channel> {
-    let ids: Vec<f32> = names.iter().map(|name| f32::from_bits(id(name))).collect();
+/// The channels of all ranks, line by line. `names` are those of the indices in `visible`.
+pub(super) fn lines<'a>(names: &[&str], visible: &'a Visible) -> Vec<(String, Line<'a>)> {
+    let ids = names.iter().map(|name| f32::from_bits(id(name))).collect();
     let ranks = visible.most().max(RANKS).next_multiple_of(2);
-    let count = visible.width() * visible.height();
-    let mut channels: Vec<Channel> = (0..ranks / 2)
-        .flat_map(|layer| ["R", "G", "B", "A"].map(|channel| format!("{LAYER}{layer:02}.{channel}")))
-        .map(|name| Channel { name, values: vec![0.0; count] })
-        .collect();
-    let mut ranked: Vec<Share> = Vec::new();
-    for (at, pixel) in visible.pixels().enumerate() {
-        ranked.clear();
-        for share in pixel {
-            match ranked.iter_mut().find(|own| ids[own.part].to_bits() == ids[share.part].to_bits()) {
-                Some(own) => own.coverage += share.coverage,
-                None => ranked.push(*share),
+    let values = vec![vec![0.0; visible.width()]; 2 * ranks];
+    let shared = Rc::new(RefCell::new(Row { visible, ids, y: None, values }));
+    let names =
+        (0..ranks / 2).flat_map(|layer| ["R", "G", "B", "A"].map(|channel| format!("{LAYER}{layer:02}.{channel}")));
+    let line = |channel: usize| -> Line<'a> {
+        let row = Rc::clone(&shared);
+        Box::new(move |y, line| line.copy_from_slice(row.borrow_mut().channel(y, channel)))
+    };
+    names.enumerate().map(|(channel, name)| (name, line(channel))).collect()
+}
+
+/// The channels of a row of pixels. They are made together when the first one is asked for, because the ranks of a pixel are in all of them.
+struct Row<'a> {
+    visible: &'a Visible,
+    /// The ids of all names.
+    ids: Vec<f32>,
+    /// The row that is there.
+    y: Option<usize>,
+    /// For each channel its values.
+    values: Vec<Vec<f32>>,
+}
+
+impl Row<'_> {
+    fn channel(&mut self, y: usize, channel: usize) -> &[f32] {
+        if self.y != Some(y) {
+            self.y = Some(y);
+            self.fill(y);
+        }
+        &self.values[channel]
+    }
+
+    fn fill(&mut self, y: usize) {
+        let Self { visible, ids, values, .. } = self;
+        values.iter_mut().for_each(|line| line.fill(0.0));
+        let mut ranked: Vec<Share> = Vec::new();
+        for (x, pixel) in visible.row(y).enumerate() {
+            ranked.clear();
+            for share in pixel {
+                match ranked.iter_mut().find(|own| ids[own.part].to_bits() == ids[share.part].to_bits()) {
+                    Some(own) => own.coverage += share.coverage,
+                    None => ranked.push(*share),
+                }
+            }
+            // Of equal shares the nearer part comes first.
+            ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
+            for (rank, share) in ranked.iter().enumerate() {
+                values[2 * rank][x] = ids[share.part];
+                values[2 * rank + 1][x] = share.coverage;
             }
         }
-        // Of equal shares the nearer part comes first.
-        ranked.sort_by(|a, b| b.coverage.total_cmp(&a.coverage));
-        for (rank, share) in ranked.iter().enumerate() {
-            channels[2 * rank].values[at] = ids[share.part];
-            channels[2 * rank + 1].values[at] = share.coverage;
-        }
     }
-    channels
 }
 
 #[cfg(test)]

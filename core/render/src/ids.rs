@@ -9,9 +9,9 @@ use super::composite::Layers;
 use super::coverage::Window;
 use super::encode::{self, EncodeError, Format};
 use super::form::Form;
-use super::layers::{self, Channel, layer_name, layer_names};
+use super::layers::{layer_name, layer_names};
 use super::streamed::{self, Line, Part};
-use super::visible::{Visible, visible};
+use super::visible::{Share, Visible, visible};
 use super::{cryptomatte, matte};
 use rototoon_base::scene::{FrameNumber, Raster, Scene, palette};
 use rototoon_image::colour;
@@ -21,16 +21,29 @@ use std::collections::BTreeSet;
 /// premultiplied, then alpha.
 pub fn ids(visible: &Visible) -> Raster<[f32; 4]> {
     let mut pixels = visible.pixels();
-    Raster::from_fn(visible.width(), visible.height(), |_, _| {
-        let mut sum = [0.0; 4];
-        for share in pixels.next().unwrap_or(&[]) {
-            let [r, g, b] = palette::distinct(share.part);
-            for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
-                *sum += share.coverage * value;
-            }
+    Raster::from_fn(visible.width(), visible.height(), |_, _| mixed(pixels.next().unwrap_or(&[])))
+}
+
+/// The colours of the parts of a pixel by their shares, premultiplied, then alpha.
+fn mixed(shares: &[Share]) -> [f32; 4] {
+    let mut sum = [0.0; 4];
+    for share in shares {
+        let [r, g, b] = palette::distinct(share.part);
+        for (sum, value) in sum.iter_mut().zip([r, g, b, 1.0]) {
+            *sum += share.coverage * value;
         }
-        sum
-    })
+    }
+    sum
+}
+
+/// The lines of a channel of that picture in linear light.
+fn light(visible: &Visible, channel: usize) -> Line<'_> {
+    let light = move |shares: &[Share]| match (channel, mixed(shares)) {
+        (3, [.., alpha]) => alpha,
+        (_, colour) if colour[3] > 0.0 => colour::decode(colour[channel] / colour[3]) * colour[3],
+        _ => 0.0,
+    };
+    Box::new(move |y, row| row.iter_mut().zip(visible.row(y)).for_each(|(own, shares)| *own = light(shares)))
 }
 
 /// Encodes a picture of ids. `parts` selects parts by index; `None` takes all.
@@ -45,22 +58,15 @@ pub fn id_picture(
     format: Format,
 ) -> Result<Vec<u8>, EncodeError> {
     let visible = visible(scene, frame, parts);
-    let picture = ids(&visible);
-    let Format::Exr(form) = format else { return encode::premultiplied(&picture) };
-    let (width, height) = (picture.width(), picture.height());
+    let Format::Exr(form) = format else { return encode::premultiplied(&ids(&visible)) };
+    let (width, height) = (visible.width(), visible.height());
     let names: Vec<&str> = scene.parts.iter().map(|part| &part.name[..]).collect();
     let attributes = cryptomatte::attributes(closed(scene, parts).map(|index| names[index]))
         .map_err(|error| EncodeError { width, height, reason: error.to_string() })?;
-    let mut channels = cryptomatte::channels(&names, &visible);
-    for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
-        let light = |pixel: &[f32; 4]| match (index, pixel[3]) {
-            (3, alpha) => alpha,
-            (_, alpha) if alpha > 0.0 => colour::decode(pixel[index] / alpha) * alpha,
-            _ => 0.0,
-        };
-        channels.push(Channel { name: name.to_owned(), values: picture.data().iter().map(light).collect() });
-    }
-    layers::encode((width, height), channels, &attributes, form)
+    let mut channels = cryptomatte::lines(&names, &visible);
+    let own = ["R", "G", "B", "A"].into_iter().enumerate();
+    channels.extend(own.map(|(channel, name)| (name.to_owned(), light(&visible, channel))));
+    streamed::encode((width, height), vec![Part { name: None, channels, attributes }], form)
 }
 
 /// Encodes the matte of all parts and of each part as OpenEXR. `parts` selects parts by index; `None` takes all.
@@ -78,7 +84,7 @@ pub fn matte_layers(
     let masks = Masks::new(scene, frame, parts);
     let mut channels = equal(&whole);
     channels.extend(masks.lines().map(|(name, line)| (format!("{name}.A"), line)));
-    streamed::encode((whole.width(), whole.height()), vec![Part { name: None, channels }], form)
+    streamed::encode((whole.width(), whole.height()), vec![Part { name: None, channels, attributes: Vec::new() }], form)
 }
 
 /// Encodes the same mattes as the parts of one OpenEXR file. The first has the matte of all parts in R, G, B and A, and the
@@ -97,10 +103,13 @@ pub fn matte_parts(
     let masks = Masks::new(scene, frame, parts);
     // A part of the document keeps its name, whatever it is.
     let mut taken = masks.list.iter().map(|(name, _)| name.clone()).collect();
-    let mut files = vec![Part { name: Some(layer_name("rgba", &mut taken)), channels: equal(&whole) }];
-    files.extend(
-        masks.lines().map(|(name, line)| Part { name: Some(name.to_owned()), channels: vec![("A".to_owned(), line)] }),
-    );
+    let mut files =
+        vec![Part { name: Some(layer_name("rgba", &mut taken)), channels: equal(&whole), attributes: Vec::new() }];
+    files.extend(masks.lines().map(|(name, line)| Part {
+        name: Some(name.to_owned()),
+        channels: vec![("A".to_owned(), line)],
+        attributes: Vec::new(),
+    }));
     streamed::encode((whole.width(), whole.height()), files, form)
 }
 

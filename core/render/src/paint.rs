@@ -17,7 +17,7 @@ use super::cells::{self, Borders};
 use super::coverage::{Shape, Window};
 use super::cryptomatte;
 use super::encode::{self, EncodeError, Format};
-use super::layers::{self, Channel};
+use super::streamed::{self, Line, Part};
 use super::visible::{LEAST, Share, Visible};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
@@ -247,12 +247,15 @@ pub fn paint_picture(regions: &[Region], width: usize, height: usize, format: Fo
         height,
         reason: error.to_string(),
     })?;
-    let mut channels = cryptomatte::channels(&names, &shares);
-    for (index, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
-        let values = picture.data().iter().map(|pixel| pixel[index]).collect();
-        channels.push(Channel { name: name.to_owned(), values });
+    let mut channels = cryptomatte::lines(&names, &shares);
+    for (channel, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+        let picture = &picture;
+        let line: Line = Box::new(move |y, row| {
+            row.iter_mut().zip(picture.row(y)).for_each(|(own, pixel)| *own = pixel[channel]);
+        });
+        channels.push((name.to_owned(), line));
     }
-    layers::encode((width, height), channels, &attributes, form)
+    streamed::encode((width, height), vec![Part { name: None, channels, attributes }], form)
 }
 
 #[cfg(test)]

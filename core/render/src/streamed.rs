@@ -1,18 +1,18 @@
 //! OpenEXR files whose pixels come line by line, in one part or in several.
 //!
-//! A file with the matte of each of hundreds of parts would fill memory if all its channels were there at once. Here a channel is
+//! A file with the matte of each of hundreds of parts would fill memory if all its channels were there at once, and the sixteen channels of ids take half a gigabyte for a frame of 4K. Here a channel is
 //! asked for one line after the other, from the top. A block of lines is compressed without loss and written before the next one
 //! is asked for. Otherwise the files are as those of [`super::layers`].
 
 use super::encode::EncodeError;
 use super::form::{Form, half};
 use super::header;
-use super::layers::text;
+use super::layers::{Attribute, text};
 use exr::block::writer::{ChunksWriter, write_chunks_with};
 use exr::block::{UncompressedBlock, enumerate_ordered_header_block_indices};
 use exr::error::UnitResult;
 use exr::meta::BlockDescription;
-use exr::meta::attribute::{ChannelDescription, LineOrder, SampleType};
+use exr::meta::attribute::{AttributeValue, ChannelDescription, LineOrder, SampleType};
 use exr::meta::header::{Header, LayerAttributes};
 use std::io::Cursor;
 
@@ -25,6 +25,8 @@ pub(super) struct Part<'a> {
     pub name: Option<String>,
     /// Names of channels, and their values. The names differ.
     pub channels: Vec<(String, Line<'a>)>,
+    /// Text attributes of its header.
+    pub attributes: Vec<Attribute>,
 }
 
 /// Encodes pictures of `width` × `height` pixels as the parts of one OpenEXR file. Their names differ.
@@ -73,7 +75,10 @@ pub(super) fn encode(
 
 fn header_of(part: &Part, size: (usize, usize), form: Form) -> Header {
     let channel = |(name, _): &(String, Line)| ChannelDescription::named(text(name), form.kind(name));
-    let own = part.name.as_ref().map_or_else(LayerAttributes::default, |name| LayerAttributes::named(text(name)));
+    let mut own = part.name.as_ref().map_or_else(LayerAttributes::default, |name| LayerAttributes::named(text(name)));
+    for Attribute { name, value } in &part.attributes {
+        own.other.insert(text(name), AttributeValue::Text(text(value)));
+    }
     Header::new(text(""), size, part.channels.iter().map(channel).collect())
         .with_encoding(form.packing.compression(), BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(own)
@@ -110,11 +115,17 @@ mod tests {
         for form in
             Bits::ALL.map(|(bits, _)| Form { bits, packing: Packing::Zips }).into_iter().chain([Form::default()])
         {
-            let one = encode((width, height), vec![Part { name: None, channels: streamed(&names[0]) }], form).unwrap();
-            assert!(one == layers::encode((width, height), kept(&names[0]), &[], form).unwrap(), "{form:?}");
+            let attribute = |k: usize| Attribute { name: format!("n{k}"), value: format!("v{k}é") };
+            let attributes: Vec<Attribute> = (0..9).map(attribute).collect();
+            let own = Part { name: None, channels: streamed(&names[0]), attributes: attributes.clone() };
+            let one = encode((width, height), vec![own], form).unwrap();
+            assert!(one == layers::encode((width, height), kept(&names[0]), &attributes, form).unwrap(), "{form:?}");
             let parts = ["rgba", "a", "é"].iter().zip(&names);
-            let part =
-                |(name, names): (&&str, &Vec<&str>)| Part { name: Some((*name).into()), channels: streamed(names) };
+            let part = |(name, names): (&&str, &Vec<&str>)| Part {
+                name: Some((*name).into()),
+                channels: streamed(names),
+                attributes: Vec::new(),
+            };
             let several = encode((width, height), parts.clone().map(part).collect(), form).unwrap();
             let expected = parts.map(|(name, names)| ((*name).to_owned(), kept(names))).collect();
             assert!(several == layers::encode_parts((width, height), expected, form).unwrap(), "{form:?}");

@@ -72,6 +72,12 @@ impl Visible {
         result
     }
 
+    /// The shares of each pixel of a row, as [`Self::pixels`] has them.
+    pub fn row(&self, y: usize) -> impl Iterator<Item = &[Share]> {
+        let ends = &self.starts[y * self.width..=(y + 1) * self.width];
+        ends.windows(2).map(|ends| &self.shares[ends[0]..ends[1]])
+    }
+
     /// Greatest number of shares of a pixel.
     pub fn most(&self) -> usize {
         self.pixels().map(<[Share]>::len).max().unwrap_or(0)
