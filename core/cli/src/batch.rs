@@ -147,6 +147,16 @@ fn report_path(given: &ArgMatches, manifest: &Manifest, (path, folder): (&Path, 
     Ok(report)
 }
 
+/// Shots at a time, the threads of each, and the memory of all together.
+fn of_given(given: &ArgMatches, shots: usize) -> (usize, usize, Budget) {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let asked = |id: &str| given.get_one::<u16>(id).map_or(0, |number| usize::from(*number));
+    let jobs = if asked("jobs") == 0 { cores } else { asked("jobs") }.min(shots).max(1);
+    let threads = if asked("threads") == 0 { (cores / jobs).max(1) } else { asked("threads") };
+    let memory = given.get_one::<u64>("memory").map_or_else(Budget::of_machine, |bytes| Budget::new(*bytes));
+    (jobs, threads, memory)
+}
+
 fn work(
     given: &ArgMatches,
     manifest: &Manifest,
@@ -154,11 +164,7 @@ fn work(
     (path, folder): (&Path, &Path),
 ) -> Result<Vec<Outcome>, Failure> {
     let report = report_path(given, manifest, (path, folder))?;
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let asked = |id: &str| given.get_one::<u16>(id).map_or(0, |number| usize::from(*number));
-    let jobs = if asked("jobs") == 0 { cores } else { asked("jobs") }.min(shots.len()).max(1);
-    let threads = if asked("threads") == 0 { (cores / jobs).max(1) } else { asked("threads") };
-    let memory = given.get_one::<u64>("memory").map_or_else(Budget::of_machine, |bytes| Budget::new(*bytes));
+    let (jobs, threads, memory) = of_given(given, shots.len());
     let all = shots.len();
     let shots_word = if all == 1 { "shot" } else { "shots" };
     line("note", &format!("{all} {shots_word}, at most {jobs} at a time, within {} of memory", Bytes(memory.bytes())));

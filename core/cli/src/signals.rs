@@ -52,11 +52,15 @@ pub fn status(signal: i32) -> u8 {
 }
 
 /// The name of a signal, such as `SIGTERM`.
+#[cfg(unix)]
 pub fn name(signal: i32) -> &'static str {
-    #[cfg(unix)]
-    return signal_hook::low_level::signal_name(signal).unwrap_or("a signal");
-    #[cfg(not(unix))]
-    return if signal == INTERRUPT { "Ctrl-C" } else { "a signal" };
+    signal_hook::low_level::signal_name(signal).unwrap_or("a signal")
+}
+
+/// The name of a signal. Only Ctrl-C comes here, and the closing of the console in its place.
+#[cfg(not(unix))]
+pub fn name(_signal: i32) -> &'static str {
+    "Ctrl-C"
 }
 
 /// Ends the program by a signal that stopped it.
