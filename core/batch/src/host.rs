@@ -1,13 +1,6 @@
 //! Which machine writes, and when: for the report, in which workers of a farm meet.
 
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
-
-/// Seconds of a day.
-const DAY: u64 = 86_400;
-/// Days from 1 March of the year 0 to 1 January 1970.
-const TO_1970: u64 = 719_468;
-/// Days of 400 years. After these the calendar repeats.
-const ERA: u64 = 146_097;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The name that the system gives this machine; empty where it gives none.
 pub fn name() -> String {
@@ -21,29 +14,13 @@ pub fn name() -> String {
 
 /// A time in UTC by RFC 3339, with milliseconds: `2026-03-01T23:59:59.250Z`. A clock before 1970 counts as 1970.
 pub fn time(now: SystemTime) -> String {
-    let since = now.duration_since(UNIX_EPOCH).unwrap_or(Duration::ZERO);
-    let (days, second) = (since.as_secs() / DAY, since.as_secs() % DAY);
-    let [year, month, day] = date(days);
-    let (hour, minute, second, millis) = (second / 3600, second / 60 % 60, second % 60, since.subsec_millis());
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{millis:03}Z")
-}
-
-/// Year, month and day, by the days since 1 January 1970. Years are counted from March here, so that a leap day is the last day of its year.
-fn date(days: u64) -> [u64; 3] {
-    let days = days + TO_1970;
-    let (era, day) = (days / ERA, days % ERA);
-    let year = (day - day / 1460 + day / 36_524 - day / (ERA - 1)) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    // Months from March on have 31, 30, 31, 30, 31 days, and again: 153 days in five.
-    let month = (5 * day + 2) / 153;
-    let in_next_year = month >= 10;
-    let number = if in_next_year { month - 9 } else { month + 3 };
-    [400 * era + year + u64::from(in_next_year), number, day - (153 * month + 2) / 5 + 1]
+    humantime::format_rfc3339_millis(now.max(UNIX_EPOCH)).to_string()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::time::Duration;
 
     #[test]
     fn times_are_those_of_the_calendar() {
