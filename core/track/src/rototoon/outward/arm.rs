@@ -147,7 +147,7 @@ impl Arm {
             (seen.pool, seen.dear) = growing.proposed(&seen, doubtful > 0)?.into_iter().unzip();
             growing.drawings.push(seen);
             let now = growing.judge();
-            if let Some(last) = growing.left_after().filter(|_| !must && now.trusted()) {
+            if let Some(last) = (!must && now.trusted()).then(|| growing.left_after()).flatten() {
                 beyond = Some((growing.drawings[last + 1].near, Ending::Left));
                 growing.forget_beyond(last);
                 break;
@@ -380,22 +380,25 @@ impl Growing<'_> {
         points(before).iter().copied().chain(moved).any(|p| !in_picture(p, self.ground.width))
     }
 
-    /// The last trusted drawing before the newest one, if from there its motion would have taken the part out of the picture by half or more,
-    /// and it is more than its size from there. It has left then, and what was found is something else.
+    /// The last drawing before the part left the picture, though the path goes on elsewhere: from there its motion would have taken it out by
+    /// half or more, and on the next trusted drawing it is more than its size away. What was found is something else.
     fn left_after(&self) -> Option<usize> {
-        let newest = self.drawings.len() - 1;
-        let last = (0..newest).rev().find(|&d| self.sure[d].trusted())?;
-        if self.drawings[last + 1..].iter().any(|seen| seen.after_gap) {
+        let drawings = self.drawings.len().saturating_sub(WINDOW)..self.drawings.len();
+        let size = self.ground.model.texture.mesh.size;
+        let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
+        let far = |d: usize, there: &[Point]| polygon::center(points(d)).distance(polygon::center(there)) > size;
+        if !drawings.clone().skip(1).any(|d| far(d, points(d - 1))) {
             return None;
         }
-        let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
-        let steps = (newest - last) as f64;
-        let expected = |(p, q): (&Point, &Point)| *p + (*p - *q) * steps;
-        let expected: Vec<Point> = points(last).iter().zip(points(last.saturating_sub(1))).map(expected).collect();
-        let leaving = 2 * expected.iter().filter(|&&p| in_picture(p, self.ground.width)).count() < expected.len();
-        let (found, size) = (polygon::center(points(newest)), self.ground.model.texture.mesh.size);
-        let far = [points(last), &expected].iter().all(|there| polygon::center(there).distance(found) > size);
-        (leaving && far).then_some(last)
+        let trusted: Vec<usize> = drawings.filter(|&d| self.sureness(d).trusted()).collect();
+        let leaves = |&[last, next]: &[usize; 2]| {
+            let expected = |(p, q): (&Point, &Point)| *p + (*p - *q) * (next - last) as f64;
+            let expected: Vec<Point> = points(last).iter().zip(points(last.saturating_sub(1))).map(expected).collect();
+            let inside = expected.iter().filter(|&&p| in_picture(p, self.ground.width)).count();
+            let gap = self.drawings[last + 1..=next].iter().any(|seen| seen.after_gap);
+            2 * inside < expected.len() && far(next, points(last)) && far(next, &expected) && !gap
+        };
+        trusted.array_windows().find(leaves).map(|&[last, _]| last)
     }
 
     /// Forgets the drawings beyond one.
