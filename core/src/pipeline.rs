@@ -47,7 +47,9 @@ pub use conform::{Conformed, NewFootage, conform};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
-pub use fill::{DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, fill};
+pub use fill::{
+    DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, VanishedColour, fill,
+};
 pub use gaps::held_gaps;
 pub use guesses::{guessed_translation, guesses};
 pub use outdated::outdated;

@@ -67,6 +67,11 @@ fn of_layout(layout: &Layout, before: &Paint, after: &Paint, known: &[&Paint]) -
 }
 
 impl Paint {
+    /// The colours that regions of the drawing `last` have, and no region here. No paint is none of them.
+    pub fn lacks(&self, last: &Self) -> Vec<usize> {
+        (0..self.blank).filter(|&colour| last.has(colour) && !self.has(colour)).collect()
+    }
+
     /// Whether a region has a colour.
     fn has(&self, colour: usize) -> bool {
         (1..self.tracks.len()).any(|region| self.colour(region) == Some(colour))

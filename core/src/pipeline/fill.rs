@@ -15,7 +15,7 @@
 mod tests;
 mod told;
 
-pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured};
+pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, VanishedColour};
 
 use super::holds::{Holds, Stretch};
 use super::seen::Noted;
@@ -96,6 +96,8 @@ pub fn fill(
     found.extend(kept);
     found.sort_by_key(|drawing| drawing.frame);
     report.frames.retain(|frame| range.contains(&frame.frame));
+    report.vanished.retain(|own| range.contains(&own.frame));
+    report.vanished.sort_by_key(|own| own.frame);
     report.frames.sort_by_key(|frame| frame.frame);
     report.mark_bare();
     document.set_seen(Made::Filled, range, &noted.seen()).map_err(|error| field(&error))?;
@@ -337,6 +339,10 @@ impl Painting<'_> {
         };
         let in_vain = InVain { missed, ..in_vain(&page, &mut paint, &own, gaps) };
         self.miss(clicks, &in_vain);
+        // What a click takes away was meant.
+        let gone = before.iter().flat_map(|before| before.lacks(&known.last.paint));
+        let still: Vec<usize> = paint.lacks(&known.last.paint);
+        self.vanish(clicks.1.frame, gone.filter(|colour| still.contains(colour)));
         let sources = [&known.key.paint, &known.last.paint];
         let changes = before.map_or_else(Vec::new, |before| changes(&page, &before, &paint, &sources));
         Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, changes))
@@ -355,6 +361,7 @@ impl Painting<'_> {
             match carry(&known.sources(), &mut page, &mut self.next) {
                 Some(mut paint) => {
                     known.unsure.iter().for_each(|&colour| paint.doubt_returns(colour, &known.last.paint));
+                    self.vanish(frame, paint.lacks(&known.last.paint).into_iter());
                     known.last = Painted { frame, page: page.into(), paint };
                     self.keep(&known.last);
                 }
@@ -396,6 +403,12 @@ impl Painting<'_> {
         let leak = |&(click, gap, size): &(usize, Gap, [usize; 2])| LeakingClick { place: one(&click), gap, size };
         self.report.leaking.extend(in_vain.leaking.iter().map(leak));
         self.report.clicks.insert(frame, clicks.1.clicks.len());
+    }
+
+    /// Notes colours that no region of a frame has any more.
+    fn vanish(&mut self, frame: FrameNumber, colours: impl Iterator<Item = usize>) {
+        let one = |colour: usize| VanishedColour { frame, hue: self.palette[colour].clone() };
+        self.report.vanished.extend(colours.map(one));
     }
 
     /// Puts a painted drawing down.

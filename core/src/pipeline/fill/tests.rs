@@ -1,4 +1,5 @@
 mod recolours;
+mod vanished;
 
 use super::*;
 use crate::geometry::{Point, polygon};

@@ -103,6 +103,15 @@ impl fmt::Display for Recoloured {
     }
 }
 
+/// A colour that no region of a drawing has, though the drawing that was painted before it has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VanishedColour {
+    /// The first frame without it, counted from the model drawing.
+    pub frame: FrameNumber,
+    /// The colour.
+    pub hue: Hue,
+}
+
 /// What became of all frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FillReport {
@@ -116,6 +125,8 @@ pub struct FillReport {
     pub leaking: Vec<LeakingClick>,
     /// The colours that become others on the painted frames.
     pub recoloured: Vec<Recoloured>,
+    /// Colours that vanish from one drawing to the next.
+    pub vanished: Vec<VanishedColour>,
     /// By frame the number of its clicks.
     pub clicks: BTreeMap<FrameNumber, usize>,
 }
@@ -141,6 +152,7 @@ impl FillReport {
         lines.extend(self.recoloured.iter().map(ToString::to_string));
         lines.extend(self.leaking.iter().map(ToString::to_string));
         lines.extend(self.overruled_lines());
+        lines.extend(self.vanished_lines());
         let bare: Vec<FrameNumber> = self.frames.iter().filter(|f| f.bare).map(|f| f.frame).collect();
         if !bare.is_empty() {
             let most = self.clicks.values().max().copied().unwrap_or(0);
@@ -171,6 +183,24 @@ impl FillReport {
             )
         };
         counts.into_iter().map(line).collect()
+    }
+
+    /// A line for each colour that vanishes.
+    fn vanished_lines(&self) -> Vec<String> {
+        let mut frames: Vec<(&Hue, Vec<FrameNumber>)> = Vec::new();
+        for VanishedColour { frame, hue } in &self.vanished {
+            match frames.iter_mut().find(|own| own.0.is_same(hue)) {
+                Some(own) => own.1.push(*frame),
+                None => frames.push((hue, vec![*frame])),
+            }
+        }
+        let line = |(hue, frames): (&Hue, Vec<FrameNumber>)| {
+            let them = if frames.len() == 1 { "frame" } else { "frames" };
+            let told =
+                "no region has it, though the drawing painted before has: it is hidden, or a region has a wrong colour";
+            format!("the colour {hue} vanishes on {them} {}: {told}", runs(&frames))
+        };
+        frames.into_iter().map(line).collect()
     }
 
     /// Marks the frames that have hardly any region.

@@ -391,7 +391,7 @@ impl Growing<'_> {
             return None;
         }
         let trusted: Vec<usize> = drawings.filter(|&d| self.sureness(d).trusted()).collect();
-        let leaves = |&[last, next]: &[usize; 2]| {
+        let leaves = |&&[last, next]: &&[usize; 2]| {
             let expected = |(p, q): (&Point, &Point)| *p + (*p - *q) * (next - last) as f64;
             let expected: Vec<Point> = points(last).iter().zip(points(last.saturating_sub(1))).map(expected).collect();
             let inside = expected.iter().filter(|&&p| in_picture(p, self.ground.width)).count();
