@@ -9,9 +9,10 @@
 //! drawing: the share q in M of marked regions, sharpened to q² ∕ (q² + (1 − q)²). About such a region the artist's other drawings have as much
 //! less to say.
 
-use crate::confidence::{evidence, of_one_colour, probability};
+use crate::confidence::{evidence, of_one_colour, probability, witnessed};
 use crate::layout::Layout;
 use crate::leaks::{leaks, swallowed};
+use crate::lost;
 use crate::meet::{Table, meeting};
 use crate::page::{Page, Paint};
 use crate::relax::relax;
@@ -57,6 +58,8 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
     }
     paint.evidence = evidence(&known, &page.layout, &paint);
     paint.confidence = paint.evidence.iter().map(|own| own.as_ref().map_or(0.0, probability)).collect();
+    paint.bound(witnessed(&known, &paint));
+    paint.bound(lost::bounds(last, &paint));
     let seen = sources.iter().zip(&shifts).filter_map(|(source, both)| {
         let back = &both.as_ref()?.back;
         Some(swallowed(&source.page.layout, source.paint, (&page.layout, &paint), back))
@@ -64,7 +67,7 @@ pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Pa
     // A thing that one of the sources does not show either has gone before.
     let least = |a: Vec<f64>, b: Vec<f64>| a.iter().zip(&b).map(|(a, b)| a.min(*b)).collect();
     if let Some(shares) = seen.reduce(least) {
-        paint.confidence.iter_mut().zip(shares).for_each(|(own, share)| *own = own.min(of_one_colour(share)));
+        paint.bound(shares.into_iter().map(of_one_colour));
     }
     number(&mut paint, last.paint, &last.relaxed.all, &page.layout, next);
     paint.corrected = corrected;

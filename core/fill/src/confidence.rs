@@ -29,6 +29,13 @@
 //! gone, has none: whatever it is given is wrong in part. If s is the share of it that came from things of other colours, which are nowhere else now,
 //! by all sources, it has at most 1 − (s / 0.15)². So a closed eye costs a face little, and a figure that has run into the sky makes the sky doubtful.
 //!
+//! # Witnesses
+//!
+//! A mistake would become surer from drawing to drawing: each shows rightly who is who on the last one, so all but the mistake itself speaks for it. But a source
+//! cannot know a colour better than it has it. So the sources are witnesses: each one's word is worth (1 − n) s p, with p the past by this source alone, and a colour is at
+//! most as sure as the word of its best witness. What the clicked drawing says too may become surer again. What the last drawing alone says
+//! cannot.
+//!
 //! # Limits
 //!
 //! What is wrong and looks right in every way is given a high confidence: a left leg that all sources take for the right one. A drawing
@@ -58,6 +65,19 @@ pub(crate) fn of_one_colour(swallowed: f64) -> f64 {
     1.0 - (swallowed / MIXED).min(1.0).powi(2)
 }
 
+/// For each region what the word of its best witness is worth: no colour is surer than that. 0 for what is not painted.
+pub(crate) fn witnessed(known: &[Said], paint: &Paint) -> Vec<f64> {
+    let of = |region: usize| {
+        let colour = paint.colour(region)?;
+        let worth = |said: &Said| {
+            let heard = hear(said, &[], region, colour);
+            heard.painted * heard.share * heard.past
+        };
+        Some(known.iter().filter(|said| said.hears(region)).map(worth).fold(0.0, f64::max))
+    };
+    (0..paint.colours.len()).map(|region| of(region).unwrap_or(0.0)).collect()
+}
+
 /// The evidence about each region of a drawing, by what the sources said; `None` for what is not painted.
 pub(crate) fn evidence(known: &[Said], layout: &Layout, paint: &Paint) -> Vec<Option<Evidence>> {
     let claims: Vec<Vec<f64>> = known.iter().map(claims).collect();
@@ -66,7 +86,7 @@ pub(crate) fn evidence(known: &[Said], layout: &Layout, paint: &Paint) -> Vec<Op
         colours.iter().zip(&paint.colours).map(|(c, row)| logit(c.map_or(0.0, |c| f64::from(row[c])))).collect();
     let of = |region: usize| {
         let colour = colours[region]?;
-        let loud = known.iter().zip(&claims).filter(|(said, _)| said.silent[region] <= 0.5);
+        let loud = known.iter().zip(&claims).filter(|(said, _)| said.hears(region));
         let all: Vec<Heard> = loud.map(|(said, claims)| hear(said, claims, region, colour)).collect();
         let mean = |value: fn(&Heard) -> f64| all.iter().map(value).sum::<f64>() / all.len() as f64;
         let least = |value: fn(&Heard) -> f64| all.iter().map(value).fold(f64::INFINITY, f64::min);
@@ -101,7 +121,7 @@ fn hear(said: &Said, claims: &[f64], region: usize, colour: usize) -> Heard {
     let best = alike.iter().rev().copied().max_by(|&a, &b| sure[a].total_cmp(&sure[b]));
     Heard {
         share: if total > 0.0 { f64::from(sums[colour] / total) } else { 0.0 },
-        claims: best.map_or(0.0, |best| claims[best]),
+        claims: best.and_then(|best| claims.get(best)).copied().unwrap_or(0.0),
         past: past.unwrap_or(0.0),
         painted: 1.0 - f64::from(said.unpainted[region]),
     }
@@ -209,6 +229,21 @@ mod tests {
         let unknown = of_box(&[bare]);
         worse("clear", &clear, &unknown);
         assert!(probability(&unknown) < 0.5, "{}", probability(&unknown));
+    }
+
+    #[test]
+    fn no_colour_is_surer_than_the_word_of_its_best_witness() {
+        let (clicked, mut last) = (painted(), painted());
+        last.confidence[2] = 0.6;
+        let word = |key: [f32; 3]| {
+            let known = [said(&clicked, [CLEAR[0], key, CLEAR[2]]), said(&last, CLEAR)];
+            (witnessed(&known, &painted())[2], probability(&of_box(&known)))
+        };
+        // The clicked drawing takes it for the paper. Then it is as sure as it was on the last one.
+        let (worth, alone) = word([0.9, 0.1, 0.0]);
+        assert!((worth - 0.6).abs() < 1e-6 && alone > 0.8, "{worth}, {alone}");
+        assert!((word([0.0, 1.0, 0.0]).0 - 1.0).abs() < 1e-6, "what the clicked drawing says too is surer again");
+        assert_eq!(witnessed(&[said(&clicked, CLEAR)], &Paint::nothing(3, 2)), [0.0; 4]);
     }
 
     #[test]

@@ -20,6 +20,7 @@
 //! - [`carry`](mod@carry): colours and numbers on the next drawing
 //! - [`change`]: a colour that becomes another one from a drawing on
 //! - [`confidence`]: how probable it is that a colour is right, by the [`evidence`]
+//! - [`lost`]: a colour in whose place another one is lost is in doubt
 //! - [`outlines`]: painted regions as outlines with holes
 //! - [`thin`]: outlines with fewer points, the same for both sides of a border
 //!
@@ -73,6 +74,7 @@ pub mod evidence;
 pub mod layout;
 pub mod leaks;
 mod levels;
+pub mod lost;
 pub mod meet;
 pub mod outlines;
 pub mod outside;

@@ -262,6 +262,11 @@ impl Paint {
         self.evidence[region] = None;
     }
 
+    /// Lowers the confidence in each region's colour to a bound.
+    pub(crate) fn bound(&mut self, most: impl IntoIterator<Item = f64>) {
+        self.confidence.iter_mut().zip(most).for_each(|(own, most)| *own = own.min(most));
+    }
+
     /// From here on the clicks are no corrections of what was carried: the drawing is one from which others are painted.
     pub fn settle(&mut self) {
         self.corrected.fill(0.0);

@@ -17,3 +17,10 @@ pub(crate) struct Said<'a> {
     /// For each region how far the source says nothing about it, 0 to 1, since a correction of the artist overrules it.
     pub silent: Vec<f32>,
 }
+
+impl Said<'_> {
+    /// Whether what the source says about a region counts: no correction overrules it.
+    pub fn hears(&self, region: usize) -> bool {
+        self.silent[region] <= 0.5
+    }
+}
