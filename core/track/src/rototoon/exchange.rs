@@ -4,20 +4,19 @@
 //! tracker may take each for the other one in between. Both contours fit their drawings then, move smoothly, and are right at
 //! both keys. So the fit, the margin of the joint choice, and the agreement of the two keys all say that they are sure.
 //!
-//! **How.** A frame is *known* if one of them has a key or a correction
-//! there, or shows a key's drawing. Between two frames that are known one after the other, parts that meet once cannot be exchanged:
-//! each key says which is which on its side. If [alike](super::alike) parts meet twice or more, nothing says so between the first time and the last. There the
-//! probability of each point is multiplied by that of no exchange, 1 − [`EXCHANGED`].
+//! **How.** A frame is *known* for two parts if one of them has a key or a correction there, or shows a key's drawing. Between two frames
+//! that are known one after the other, parts that meet once cannot be exchanged: each key says which is which on its side. If parts
+//! that are [alike](super::alike) meet twice or more, nothing says so from the first time to the last. There the probability of each
+//! point is multiplied by that of no exchange, 1 − [`EXCHANGED`].
 //!
-//! The sign was found on anubis, the boy, the jumping girl, the penguin and the run, each with their own keys and with two to four.
-//! It was checked on a film of a walk in pencil that nobody had fitted anything to. Of contours that got 0.8 or more, 20 of 3175 were
-//! lost on the first, and 24 of 353 on the second. The sign names 20 and 24 of them, among 172 and 75 contours.
+//! The sign was found on films with their own keys and with two to four, and checked on a walk in pencil. Of contours that got 0.8
+//! or more, 20 of 3175 were lost on the first, and 24 of 353 on the second. All of these have the sign, among 172 and 75 that do.
+//! `docs/src/methods/confidence.md` has the tables.
 //!
 //! **Limits.** The right contours of a walk are doubted too, until a key or a correction between the two meetings says which leg is
-//! which. Open lines are not looked at, and parts with one key have a sign of their own
-//! ([`twins`](crate::shared::twins)).
+//! which. Open lines are not looked at, and parts with one key have a sign of their own ([`twins`](crate::shared::twins)).
 
-use super::alike::{Look, between_meetings, meet, median_colour};
+use super::alike::{Look, between_meetings, median_colour, meet};
 use super::confidence::HELD;
 use super::stage::Kit;
 use crate::contract::error::TrackError;
