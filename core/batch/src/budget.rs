@@ -16,7 +16,7 @@
 //! - the pictures that each thread works on, up to 60 bytes for each working pixel.
 //!
 //! Drawing holds 70 bytes for each pixel and thread. The greater of tracking and drawing counts. Peaks were measured on
-//! 28 November 2026 as the resident set of `track`, in MB:
+//! 28 November 2026, those of the walk on the 30th, as the resident set of `track`, in MB:
 //!
 //! | shot | size | frames | parts | pixels within parts | 1 thread | estimate | more threads | estimate |
 //! | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
@@ -29,6 +29,9 @@
 //! | Anubis | 540 × 540 | 28 | 12 | 12 % | 375 | 430 | 4: 410 | 482 |
 //! | penguin | 540 × 540 | 29 | 5 | 7 % | 273 | 351 | 4: 330 | 404 |
 //! | jumping jacks | 540 × 540 | 20 | 1 | 17 % | 185 | 381 | 8: 207 | 503 |
+//! | a walk in pencil | 1920 × 1080 | 60 | 11 | 11 % | 1100 | 1300 | 2: 961 | 1330 |
+//! | the same, longer | 1920 × 1080 | 120 | 12 | 12 % | 1898 | 2320 | 2: 1861 | 2350 |
+//! | the whole of it | 1920 × 1080 | 240 | 12 | 12 % | | 4290 | 2: 3700 | 4320 |
 //!
 //! The estimate is the higher of the two figures everywhere. One that is too high costs some shots at a time on the first run;
 //! one that is too low may cost the shot.
