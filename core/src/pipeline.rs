@@ -13,6 +13,7 @@ mod contrast;
 mod doubts;
 mod error;
 mod excerpt;
+mod exchanges;
 mod fill;
 mod gaps;
 mod guesses;
@@ -47,6 +48,7 @@ pub use conform::{Conformed, NewFootage, conform};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
+pub use exchanges::exchanges;
 pub use fill::{
     DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, VanishedColour, fill,
 };

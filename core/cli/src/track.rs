@@ -51,6 +51,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let tracking =
             pipeline::track(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
         say_ends(&document.scene, &tracking);
+        pipeline::exchanges(&document.scene, &tracking).iter().for_each(|text| line("note", text));
         Ok(document)
     })?;
     project::say_gaps(&document, from)?;

@@ -61,7 +61,7 @@ pub mod zhou2011;
 
 pub use contract::error::TrackError;
 pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
-pub use contract::tracking::{Ending, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
+pub use contract::tracking::{Ending, Exchange, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
 pub use rototoon::mechanisms::{Mechanism, Mechanisms};
 pub use shared::held::{began, drawings};
 pub use shared::hidden::{covers, hidden_share, is_under};

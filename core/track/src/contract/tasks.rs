@@ -88,7 +88,7 @@ pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) ->
 
 /// The tracks of all parts, from the tracks of their spans.
 pub(crate) fn assemble(scene: &Scene, tasks: &[Task], done: Vec<Option<(SpanTrack, bool)>>) -> Tracking {
-    let mut tracking = Tracking { parts: vec![PartTrack::default(); scene.parts.len()], jobs: Vec::new() };
+    let mut tracking = Tracking { parts: vec![PartTrack::default(); scene.parts.len()], ..Tracking::default() };
     for (task, result) in tasks.iter().zip(done) {
         let Some((track, solved)) = result else { continue };
         let part = &mut tracking.parts[task.part];

@@ -13,6 +13,17 @@ pub struct Tracking {
     pub parts: Vec<PartTrack>,
     /// One entry per job, ordered by part, then by span.
     pub jobs: Vec<JobReport>,
+    /// Parts that look alike and may have changed places.
+    pub exchanges: Vec<Exchange>,
+}
+
+/// Two parts that look alike, and the frames on which nothing says which is which.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exchange {
+    /// Their indices in the scene.
+    pub parts: [usize; 2],
+    /// The frames. Their contours are doubtful there, or lost.
+    pub frames: Vec<FrameNumber>,
 }
 
 /// Report on one part over one span.

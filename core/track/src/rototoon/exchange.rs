@@ -20,7 +20,7 @@ use super::alike::{Look, between_meetings, median_colour, meet};
 use super::confidence::HELD;
 use super::stage::Kit;
 use crate::contract::error::TrackError;
-use crate::contract::tracking::{PartTrack, Tracking};
+use crate::contract::tracking::{Exchange, PartTrack, Tracking};
 use crate::shared::features::{Padded, working_scale};
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::outcome::mean;
@@ -33,25 +33,33 @@ const EXCHANGED: f64 = 0.28;
 const LEVEL: usize = 2;
 const EACH: f64 = 2.0;
 
-/// Makes the points of parts that may have changed places less sure.
+/// Makes the points of parts that may have changed places less sure, and names these parts.
 ///
 /// # Errors
 ///
 /// The error of a picture that cannot be read.
 pub(super) fn doubt(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<(), TrackError> {
     let looks = scene.parts.iter().map(|part| look(kit, scene, part)).collect::<Result<Vec<_>, TrackError>>()?;
-    let mut doubted = BTreeSet::new();
+    let mut exchanges = Vec::new();
     for (a, of_a) in looks.iter().enumerate() {
         let alike = |b: &usize| matches!((of_a, &looks[*b]), (Some(x), Some(y)) if x.is_like(y));
         for b in (a + 1..looks.len()).filter(alike) {
             let pair = [a, b].map(|p| (&scene.parts[p], &tracking.parts[p]));
-            doubted.extend(undecided(pair).into_iter().flat_map(|frame| [(a, frame), (b, frame)]));
+            let frames = undecided(pair);
+            if !frames.is_empty() {
+                exchanges.push(Exchange { parts: [a, b], frames });
+            }
         }
     }
+    // A part that may be at either of two others is doubted once.
+    let of =
+        |exchange: &Exchange| exchange.parts.map(|p| exchange.frames.iter().map(move |&f| (p, f)).collect::<Vec<_>>());
+    let doubted: BTreeSet<(usize, FrameNumber)> = exchanges.iter().flat_map(of).flatten().collect();
     for (p, frame) in doubted {
         let points = tracking.parts[p].confidence.entry(frame).or_default();
         points.iter_mut().for_each(|point| *point *= 1.0 - EXCHANGED);
     }
+    tracking.exchanges = exchanges;
     Ok(())
 }
 

@@ -137,7 +137,7 @@ fn contours_are_steadied_where_lines_wobble_and_the_memory_changes_nothing() {
                 ..Default::default()
             })
             .collect(),
-        jobs: Vec::new(),
+        ..Tracking::default()
     };
     let mut tracker = Tracker::new(TrackOptions::default());
     let tracking = tracker.track(&scene, &face, &Rising::default()).unwrap();
