@@ -1,4 +1,5 @@
-//! Things that are lost: a region of the last drawing that no region of its colour is, though another one may be it.
+//! Things that are lost: regions of the last drawing that are found in no region of their colour, though a region of another colour may
+//! be one of them.
 //!
 //! A boot hangs behind the other one on the clicked drawing. On the next drawing it is whole, and looks more like the leg beside it. Then a boot is lost and a leg is
 //! too many. Each of both alone is common: things go behind others, and fall to pieces. Together they are a mistake more often than not.

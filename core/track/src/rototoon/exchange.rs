@@ -1,4 +1,4 @@
-//! Doubts parts that may have changed places.
+//! Doubts parts that may have changed places (an *identity switch*).
 //!
 //! **Why.** The near leg of a walk looks like the far one. Where the two come together, part, and come together again, a
 //! tracker may take each for the other one in between. Both contours fit their drawings then, move smoothly, and are right at
@@ -23,7 +23,6 @@ use crate::contract::error::TrackError;
 use crate::contract::tracking::{Exchange, PartTrack, Tracking};
 use crate::shared::features::{Padded, working_scale};
 use rototoon_base::geometry::{Point, polygon};
-use rototoon_base::scene::outcome::mean;
 use rototoon_base::scene::{FrameNumber, Part, Scene};
 use std::collections::BTreeSet;
 
@@ -63,7 +62,7 @@ pub(super) fn doubt(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<
     Ok(())
 }
 
-/// The look of a closed part at its first and its last key. `None` for other parts and parts with one key.
+/// The look of a closed part at its first and its last key. `None` for other parts, parts with one key, and parts too thin for a look.
 fn look(kit: Kit, scene: &Scene, part: &Part) -> Result<Option<Look>, TrackError> {
     let ends = [part.keys.first_key_value(), part.keys.last_key_value()];
     let [Some((&first, a)), Some((&last, b))] = ends else { return Ok(None) };
@@ -71,16 +70,17 @@ fn look(kit: Kit, scene: &Scene, part: &Part) -> Result<Option<Look>, TrackError
         return Ok(None);
     }
     let scale = working_scale(scene.footage.height);
-    let colours = [inside(kit, first, a, scale)?, inside(kit, last, b, scale)?];
-    Ok(Some(Look::new(part.keys.values().map(Vec::as_slice), (colours[0] + colours[1]) / 2.0)))
+    let colours = (inside(kit, first, a, scale)?, inside(kit, last, b, scale)?);
+    let (Some(a), Some(b)) = colours else { return Ok(None) };
+    Ok(Some(Look::new(part.keys.values().map(Vec::as_slice), (a + b) / 2.0)))
 }
 
-/// The median colour inside a contour, by channel. Black if no place is inside.
-fn inside(kit: Kit, frame: FrameNumber, contour: &[Point], scale: f64) -> Result<Padded, TrackError> {
+/// The median colour inside a contour, by channel. `None` if no place is inside.
+fn inside(kit: Kit, frame: FrameNumber, contour: &[Point], scale: f64) -> Result<Option<Padded>, TrackError> {
     let features = kit.colours(frame)?;
     let level = features.level(LEVEL);
     let contour: Vec<Point> = contour.iter().map(|&p| p / scale).collect();
-    let Some((low, high)) = polygon::bounds(&contour) else { return Ok(Padded::ZERO) };
+    let Some((low, high)) = polygon::bounds(&contour) else { return Ok(None) };
     let step = level.pixel() * EACH;
     let count = |from: f64, to: f64| ((to - from) / step).clamp(0.0, 1000.0) as usize + 1;
     let mut colours = Vec::new();
@@ -92,7 +92,7 @@ fn inside(kit: Kit, frame: FrameNumber, contour: &[Point], scale: f64) -> Result
             }
         }
     }
-    Ok(median_colour(colours.iter().copied()))
+    Ok((!colours.is_empty()).then(|| median_colour(colours.iter().copied())))
 }
 
 /// The frames on which nothing says which of two parts is which.
@@ -115,7 +115,7 @@ fn undecided([a, b]: [(&Part, &PartTrack); 2]) -> Vec<FrameNumber> {
 /// Whether a part has a key or a correction on a frame, or a key's drawing.
 fn is_known((part, track): (&Part, &PartTrack), frame: FrameNumber) -> bool {
     let corrected = part.pins.contains_key(&frame) || part.centers.contains_key(&frame);
-    let held = || track.confidence.get(&frame).and_then(|points| mean(points)).is_some_and(|mean| mean >= HELD);
+    let held = || track.confidence.get(&frame).is_some_and(|points| points.iter().all(|point| *point == HELD));
     part.keys.contains_key(&frame) || corrected || held()
 }
 
@@ -171,8 +171,11 @@ mod tests {
         pinned[0].0.pins.insert(6, BTreeMap::from([(1, Point::ZERO)]));
         assert!(found(&pinned).is_empty());
         let mut held = two(&[1, 8]);
-        held[1].1.confidence.insert(2, vec![HELD; 4]);
+        // The mean of twelve is not the same number.
+        held[1].1.confidence.insert(2, vec![HELD; 12]);
         assert!(found(&held).is_empty());
+        held[1].1.confidence.insert(2, vec![0.998; 12]);
+        assert_eq!(found(&held), (1..=8).collect::<Vec<_>>(), "sure for another reason");
         let mut beyond = two(&[3, 8]);
         beyond[1].0.keys.insert(10, square(30.0));
         assert_eq!(found(&beyond), [3, 4, 5, 6, 7, 8]);

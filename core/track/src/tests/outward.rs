@@ -106,18 +106,33 @@ fn a_part_that_leaves_the_picture_needs_no_key() {
     assert!(found.tracks.iter().all(|(&f, p)| polygon::center(p).distance(center(f)) < 4.0), "{:?}", found.tracks);
 }
 
-#[test]
-fn a_part_that_left_the_picture_is_not_what_comes_into_it() {
+/// A ball that leaves, and one of the same look that is there from frame 4 on.
+fn leaving_and_coming() -> Drawn {
     fn coming(t: f64) -> (Point, f64) {
         (if t < 3.0 { Point::splat(-100.0) } else { Point::new(60.0, 90.0) }, 0.0)
     }
     let rest = leaving().0[0].rest.clone();
     let ball = |motion: fn(f64) -> (Point, f64)| Shape { rest: rest.clone(), colour: [0.2, 0.4, 0.8], motion };
-    let drawn = Drawn(vec![ball(|t| (Point::new(150.0 + 22.0 * t, 90.0), 0.0)), ball(coming)]);
+    Drawn(vec![ball(|t| (Point::new(150.0 + 26.0 * t, 90.0), 0.0)), ball(coming)])
+}
+
+#[test]
+fn a_part_that_left_the_picture_is_not_what_comes_into_it() {
+    let drawn = leaving_and_coming();
     let found = &track(&drawn, &drawn.scene(vec![single(&drawn.0[0], "ball", 0.0, 0)])).parts[0];
     let near = |points: &[Point]| polygon::center(points).distance(Point::new(60.0, 90.0)) < 20.0;
     assert!(!found.tracks.values().any(|points| near(points)), "{:?}", found.tracks);
     assert!(found.ends.iter().all(|end| end.reason == Ending::Left) && found.ends.len() == 1, "{:?}", found.ends);
+}
+
+#[test]
+fn a_part_that_left_the_picture_is_where_a_correction_says() {
+    let (drawn, there) = (leaving_and_coming(), Point::new(60.0, 90.0));
+    let mut part = single(&drawn.0[0], "ball", 0.0, 0);
+    part.centers.insert(4, there);
+    let found = &track(&drawn, &drawn.scene(vec![part])).parts[0];
+    assert_eq!(frames(found), (0..=LAST).collect::<Vec<_>>());
+    assert!((4..=LAST).all(|frame| polygon::center(&found.tracks[&frame]).distance(there) < 4.0), "{:?}", found.tracks);
 }
 
 #[test]

@@ -383,7 +383,9 @@ impl Growing<'_> {
     /// The last drawing before the part left the picture, though the path goes on elsewhere: from there its motion would have taken it out by
     /// half or more, and on the next trusted drawing it is more than its size away. What was found is something else.
     fn left_after(&self) -> Option<usize> {
-        let drawings = self.drawings.len().saturating_sub(WINDOW)..self.drawings.len();
+        // Behind a correction the artist says where the part is.
+        let corrected = self.drawings.iter().rposition(|seen| seen.correction.is_some()).unwrap_or(0);
+        let drawings = self.drawings.len().saturating_sub(WINDOW).max(corrected)..self.drawings.len();
         let size = self.ground.model.texture.mesh.size;
         let points = |d: usize| &self.drawings[d].pool[self.path[d]].points;
         let far = |d: usize, there: &[Point]| polygon::center(points(d)).distance(polygon::center(there)) > size;
@@ -395,7 +397,8 @@ impl Growing<'_> {
             let expected = |(p, q): (&Point, &Point)| *p + (*p - *q) * (next - last) as f64;
             let expected: Vec<Point> = points(last).iter().zip(points(last.saturating_sub(1))).map(expected).collect();
             let inside = expected.iter().filter(|&&p| in_picture(p, self.ground.width)).count();
-            let gap = self.drawings[last + 1..=next].iter().any(|seen| seen.after_gap);
+            // From the key alone, and behind a gap, the motion is not known.
+            let gap = last == 0 || self.drawings[last..=next].iter().any(|seen| seen.after_gap);
             2 * inside < expected.len() && far(next, points(last)) && far(next, &expected) && !gap
         };
         trusted.array_windows().find(leaves).map(|&[last, _]| last)

@@ -25,7 +25,7 @@
 //! hand-made drawings at least 3. The clean film with 0.14 has limbs that swing, and much motion. So noise has to be [`OF_MOTION`]
 //! of the motion too: it is 0.5 to 2.6 of it on the six, and at most 0.2 on that film.
 //!
-//! **Limits.** On a film of few drawings noise cannot be told from motion. Parts with a single key are not steadied.
+//! **Limits.** Whether a film wobbles at all is decided by the exact noise: near these bounds a changed key may move every span. On a film of few drawings noise cannot be told from motion. Parts with a single key are not steadied.
 
 mod motion;
 mod noise;

@@ -7,6 +7,8 @@
 //!
 //! **Limits.** Even motion, whose second differences have the same sign for long, gives no noise at all: a lower bound.
 
+use rototoon_base::numeric::median::median;
+
 /// From a median of absolute values to a standard deviation.
 const DEVIATION: f64 = 1.4826;
 
@@ -75,14 +77,7 @@ impl Differences {
 
 /// The variance that absolute values have, by their median.
 fn variance(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = match sorted.len() {
-        0 => return 0.0,
-        n if n % 2 == 1 => sorted[n / 2],
-        n => (sorted[n / 2 - 1] + sorted[n / 2]) / 2.0,
-    };
-    (DEVIATION * middle).powi(2)
+    (DEVIATION * median(values.to_vec())).powi(2)
 }
 
 #[cfg(test)]
