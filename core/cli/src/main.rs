@@ -11,7 +11,7 @@
 //! - [`usage`]: the memory that the program takes
 //!
 //! The exit status is 0 for success, 1 for failure, 2 for wrong arguments, and 3 for a batch whose shots want keys. A command that a signal
-//! stopped ends by that signal.
+//! stopped ends by that signal. One that came to its end all the same, good or bad, has its own status.
 
 #![forbid(unsafe_code)]
 
@@ -84,27 +84,76 @@ fn program() -> Command {
         .subcommands(subcommands().into_iter().map(|(command, _)| command))
 }
 
-/// Runs the subcommand that was given, and returns the exit status.
-fn execute(matches: &ArgMatches) -> u8 {
-    let Some((name, arguments)) = matches.subcommand() else { return failure::WRONG_USE };
+/// How a subcommand came to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ended {
+    /// By itself, with this exit status.
+    With(u8),
+    /// This signal stopped it.
+    By(i32),
+}
+
+impl Ended {
+    /// The exit status, as a shell gives it.
+    fn status(self) -> u8 {
+        match self {
+            Self::With(status) => status,
+            Self::By(signal) => signals::status(signal),
+        }
+    }
+}
+
+/// Runs the subcommand that was given.
+fn execute(matches: &ArgMatches) -> Ended {
+    let Some((name, arguments)) = matches.subcommand() else { return Ended::With(failure::WRONG_USE) };
     let known = subcommands().into_iter().find(|(command, _)| command.get_name() == name);
-    match known.map_or(Ok(()), |(_, run)| run(arguments)) {
-        Ok(()) => 0,
-        Err(failure) => match stop::signal() {
-            Some(signal) => stop::status(failure, signal),
-            None => failure.report(),
-        },
+    ended(known.map_or(Ok(()), |(_, run)| run(arguments)), stop::signal())
+}
+
+/// How a subcommand with this result came to its end, where this signal asked it to end. It is said too. A signal may come when the work is all but done: a
+/// batch whose shots want keys, or a check that found errors, then ends as it does without the signal.
+fn ended(result: Result<(), Failure>, signal: Option<i32>) -> Ended {
+    match (result, signal) {
+        (Ok(()), _) => Ended::With(0),
+        (Err(failure), Some(signal)) if failure.is_cancelled() => {
+            stop::say(signal);
+            Ended::By(signal)
+        }
+        (Err(failure), _) => Ended::With(failure.report()),
     }
 }
 
 fn main() -> ExitCode {
     let matches = program().get_matches();
-    let status = match stop::catch_signals() {
+    let ended = match stop::catch_signals() {
         Ok(()) => execute(&matches),
-        Err(failure) => failure.report(),
+        Err(failure) => Ended::With(failure.report()),
     };
-    match stop::signal() {
-        Some(signal) if status != 0 => stop::end(signal),
-        _ => ExitCode::from(status),
+    match ended {
+        Ended::With(status) => ExitCode::from(status),
+        Ended::By(signal) => stop::end(signal),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::scene::Cancelled;
+
+    #[test]
+    fn work_that_was_done_when_a_signal_came_keeps_its_status() {
+        for signal in [None, Some(15)] {
+            for (result, status) in [
+                (Ok(()), 0),
+                (Err(Failure::WantsKeys), 3),
+                (Err(Failure::Reported), 1),
+                (Err(Failure::Use("a: found b".into())), 2),
+            ] {
+                assert_eq!(ended(result, signal), Ended::With(status));
+            }
+        }
+        let named = Failure::Other(format!("a.json: {Cancelled}"));
+        assert_eq!([named, Cancelled.into()].map(|failure| ended(Err(failure), Some(15))), [Ended::By(15); 2]);
+        assert_eq!([Ended::With(3), Ended::By(15)].map(Ended::status), [3, 143]);
     }
 }

@@ -52,7 +52,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 fn step(words: &[String]) -> u8 {
     let program = std::iter::once("rototoon").chain(words.iter().map(String::as_str));
     match crate::program().try_get_matches_from(program) {
-        Ok(matches) => crate::execute(&matches),
+        Ok(matches) => crate::execute(&matches).status(),
         Err(error) => refused(error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ")),
     }
 }

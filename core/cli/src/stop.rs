@@ -6,7 +6,7 @@
 //! Commands without long work are ended in the same way.
 //!
 //! In all of these cases one line says what was stopped, and the program ends by the signal itself. So what was stopped never looks like what failed. Work
-//! that was done all the same, because the signal came at its very end, ends with its own status.
+//! that came to its end all the same, because the signal came late, ends with its own status: 0, or that of what it found or what failed.
 
 use crate::failure::{Failure, line};
 use crate::{signals, tell};
@@ -120,19 +120,10 @@ fn grace() -> Duration {
 }
 
 /// Says once what was stopped.
-fn say(signal: i32) {
+pub fn say(signal: i32) {
     if !SAID.swap(true, Ordering::Relaxed) {
         line("error", &work().stopped_by(signals::name(signal)));
     }
-}
-
-/// The status of a command that failed while the program was asked to end. A failure of another kind is said too.
-pub fn status(failure: Failure, signal: i32) -> u8 {
-    if !failure.is_cancelled() {
-        failure.report();
-    }
-    say(signal);
-    signals::status(signal)
 }
 
 /// Ends the process by a signal. Where work goes on until then, its temporary files are removed here.
