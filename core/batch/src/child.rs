@@ -322,7 +322,7 @@ mod tests {
         for (end, interrupted) in [
             ("echo 'step: 1 status=143 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a", true),
             ("kill -TERM $$", true),
-            ("kill -HUP $$", true),
+            ("echo 'step: 1 status=129 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a", true),
             ("echo 'step: 1 status=1 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a", false),
             ("kill -KILL $$", false),
         ] {
