@@ -2,8 +2,8 @@
 //!
 //! `event` is `begin`, `wait`, `start`, `step`, `shot`, `stop` or `end`. Each line says when it was written, and by whom: `time` (UTC, RFC 3339), `host` and `pid`, the
 //! worker's process. So a wrangler sees which worker has which step since when, and finds the one that hangs: a `start` without its `step`, whose worker wrote no
-//! `stop` or `end` after it. Clocks of a farm's machines differ by seconds: lines of one host are in order, those of two need not be. Results have no times, so their bytes are the same
-//! on each run.
+//! `stop` or `end` after it. Lines of one worker, that is, of one host and pid, are in order. Those of two need not be: clocks of a farm's machines differ by seconds,
+//! and of two workers on one machine either may write first. Results have no times, so their bytes are the same on each run.
 //!
 //! Several workers may write to one file; each line is written at once. If somebody opened the file in another program and saved it
 //! without a line end, a new line is begun first. Nothing is ever read back from it.
@@ -73,6 +73,8 @@ impl Report {
     ///
     /// The disk is full or gone.
     pub fn line(&self, mut value: Value) -> Result<(), WriteError> {
+        // The time is taken when it is this line's turn, so that the lines of a worker are in order.
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         for (name, what) in [
             ("time", json!(host::time(SystemTime::now()))),
             ("host", json!(host::name())),
@@ -80,7 +82,6 @@ impl Report {
         ] {
             value[name] = what;
         }
-        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(format!("{value}\n").as_bytes()).map_err(|source| WriteError { path: self.path.clone(), source })
     }
 }
@@ -124,7 +125,8 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         let lines: Vec<_> = text.lines().collect();
         assert_eq!((lines[0], lines.len()), ("\"{\"\"event\"\":1}\"", 201));
-        assert!(lines[1..].iter().all(|line| serde_json::from_str::<Value>(line).is_ok()));
+        let times = lines[1..].iter().map(|line| serde_json::from_str::<Value>(line).unwrap()["time"].to_string());
+        assert!(times.is_sorted(), "{text}");
     }
 
     #[test]

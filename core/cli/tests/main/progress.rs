@@ -102,7 +102,7 @@ fn the_report_says_who_works_on_what_since_when() {
         assert_eq!(line["pid"], pid, "{line}");
         assert_eq!(line["host"], lines[0]["host"]);
     }
-    assert!(lines.iter().map(|line| line["time"].as_str().unwrap()).is_sorted());
+    assert!(lines.iter().map(|line| line["time"].as_str().unwrap()).is_sorted(), "those of one worker: {lines:?}");
     let place = |event: &str, shot: &Value, step: &Value| {
         lines.iter().position(|line| line["event"] == event && line["shot"] == *shot && line["step"] == *step)
     };
