@@ -2,7 +2,7 @@
 //!
 //! One program takes all steps of a shot, so that each frame is decoded once. The batch writes the words of a subcommand to
 //! its standard input, a JSON list in each line. The program's standard error has errors, warnings and notes. Between them it says
-//! how far the step is, as a share of 1 and in words. Its last line for each step is the answer:
+//! how far the step is, as a share of 1 and in words. Its last line for each step is the answer; after it the program says nothing until the next request:
 //!
 //! ```text
 //! at: 0.4213 Reading frames

@@ -19,6 +19,10 @@ const PAUSE: Duration = Duration::from_millis(5);
 const GRACE: Duration = Duration::from_secs(3);
 /// Time between two looks at the program's memory.
 const LOOK: Duration = Duration::from_millis(100);
+/// Number of bytes that are read at a time.
+const BLOCK: usize = 4096;
+/// Number of bytes at the end of what was said among which an answer is looked for: those of a block, and the begin of an answer before it.
+const LAST: usize = BLOCK + 1024;
 /// Greatest number of bytes of messages that are kept.
 const MOST_MESSAGES: usize = 64 << 10;
 
@@ -107,7 +111,7 @@ impl Program {
         let (send, output) = channel();
         if let Some(mut stream) = child.stderr.take() {
             std::thread::spawn(move || {
-                let mut block = [0; 4096];
+                let mut block = [0; BLOCK];
                 while let Ok(count) = stream.read(&mut block) {
                     if count == 0 || send.send(block[..count].to_vec()).is_err() {
                         break;
@@ -188,11 +192,12 @@ impl Program {
         Ok(Heard { said, end, asked: asked.is_some(), held })
     }
 
-    /// The answer to the last request, if it is what was said last.
+    /// The answer to the last request, if it is among what was said last. Other threads of the program may say something right after it.
     fn answer(&self, said: &[u8]) -> Option<Answer> {
-        let whole = said.strip_suffix(b"\n")?;
-        let begin = whole.iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
-        Answer::read(str::from_utf8(&whole[begin..]).ok()?).filter(|answer| answer.step == self.steps)
+        let last = &said[said.len().saturating_sub(LAST)..];
+        let whole = last.split_inclusive(|&byte| byte == b'\n').filter_map(|line| line.strip_suffix(b"\n"));
+        let mut answers = whole.filter_map(|line| Answer::read(str::from_utf8(line).ok()?));
+        answers.find(|answer| answer.step == self.steps)
     }
 
     /// Waits until the program has ended; it is killed if it takes too long.
@@ -304,6 +309,17 @@ mod tests {
         let ended = program.step(&["track".into()], &|| false, &at).unwrap();
         assert_eq!(*told.lock().unwrap(), [(0.0, "Reading frames".to_owned()), (0.5, "Tracking".to_owned())]);
         assert_eq!((ended.status, ended.messages), (Some(0), vec!["note: a".to_owned(), "at: 7 no share".to_owned()]));
+    }
+
+    #[test]
+    fn an_answer_is_heard_though_something_follows_it() {
+        let mut program = shell(
+            "read a; printf 'note: a\\nstep: 1 status=0 peak_bytes=0 kept_bytes=0 processor_ms=4\\nerror: b\\nno' >&2; \
+             read a; echo ' end' >&2; echo 'step: 2 status=3 peak_bytes=0 kept_bytes=0 processor_ms=4' >&2; read a",
+        );
+        let [first, second] = [0, 1].map(|_| step(&mut program));
+        assert_eq!((first.status, first.messages[0].as_str()), (Some(0), "note: a"));
+        assert!(second.status == Some(3) && second.messages.last().unwrap().ends_with(" end"), "{second:?}");
     }
 
     #[test]

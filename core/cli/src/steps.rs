@@ -40,6 +40,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             kept_bytes: store::kept_bytes(),
             processor_ms: processor_ms().saturating_sub(before),
         };
+        // The answer is the last word of the step.
+        stop::rest();
         // At once, so that nothing comes between.
         let _ = stderr().write_all((answer.line() + "\n").as_bytes());
         if stop::signal().is_some() {

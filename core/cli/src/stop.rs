@@ -7,6 +7,7 @@
 //!
 //! In all of these cases one line says what was stopped, and the program ends by the signal itself. So what was stopped never looks like what failed. Work
 //! that came to its end all the same, because the signal came late, ends with its own status: 0, or that of what it found or what failed.
+//! A program that takes steps for a batch says nothing between two of them: its answer was its last word.
 
 use crate::failure::{Failure, line};
 use crate::{signals, tell};
@@ -17,6 +18,8 @@ use std::time::Duration;
 
 /// The signal that asked the program to end; 0 if none did.
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
+/// Whether no work is under way, so that nothing is to be said of it.
+static RESTS: AtomicBool = AtomicBool::new(false);
 /// Whether it was said what was stopped.
 static SAID: AtomicBool = AtomicBool::new(false);
 /// The work that runs.
@@ -66,6 +69,12 @@ fn work() -> MutexGuard<'static, Work> {
 /// Work on a document begins.
 pub fn begin(name: String) {
     *work() = Work { name, at: None, done: None };
+    RESTS.store(false, Ordering::Relaxed);
+}
+
+/// No work is under way until some begins: a signal ends the program without a word.
+pub fn rest() {
+    RESTS.store(true, Ordering::Relaxed);
 }
 
 /// A share of the work is done.
@@ -119,9 +128,9 @@ fn grace() -> Duration {
     Duration::from_millis(if tell::is_for_batch() { 1000 } else { 1500 })
 }
 
-/// Says once what was stopped.
+/// Says once what was stopped, if work is under way.
 pub fn say(signal: i32) {
-    if !SAID.swap(true, Ordering::Relaxed) {
+    if !RESTS.load(Ordering::Relaxed) && !SAID.swap(true, Ordering::Relaxed) {
         line("error", &work().stopped_by(signals::name(signal)));
     }
 }

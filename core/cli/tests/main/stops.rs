@@ -3,7 +3,7 @@
 use crate::season::Season;
 use serde_json::{Value, json};
 use std::fs;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -125,4 +125,24 @@ fn a_step_that_somebody_else_stopped_fails_its_shot_with_that_reason() {
     let failure = season.events("shot")[0]["failure"].to_string();
     assert!(failure.contains("render: ") && failure.contains("cancelled by SIGTERM after "), "{failure}");
     assert!(season.events("stop").is_empty() && season.events("end").len() == 1);
+}
+
+#[test]
+fn a_program_that_has_answered_says_nothing_more() {
+    let season = Season::new(1);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rototoon"));
+    command.current_dir(season.path("in/sh0")).arg("steps").stdin(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut requests = child.stdin.take().unwrap();
+    requests.write_all(b"[\"check\", \"project.json\"]\n").unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    while !line.starts_with("step: 1 status=0 ") {
+        line.clear();
+        assert!(said.read_line(&mut line).unwrap() > 0, "it answers");
+    }
+    send("TERM", &child.id().to_string());
+    line.clear();
+    said.read_to_string(&mut line).unwrap();
+    assert_eq!((line.as_str(), child.wait().unwrap().signal()), ("", Some(15)));
 }
