@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::time::{Duration, Instant};
 
 /// Frames of a shot.
 pub const FRAMES: i32 = 5;
@@ -109,6 +110,11 @@ impl Season {
         lines.filter(|line| line["event"] == kind).collect()
     }
 
+    /// Whether the report is there and has a line of a kind.
+    pub fn has_event(&self, kind: &str) -> bool {
+        self.path("out/report.jsonl").exists() && !self.events(kind).is_empty()
+    }
+
     pub fn clear_report(&self) {
         fs::remove_file(self.path("out/report.jsonl")).unwrap();
     }
@@ -120,4 +126,13 @@ impl Season {
 
 pub fn outcomes(events: &[Value]) -> Vec<&str> {
     events.iter().map(|event| event["outcome"].as_str().unwrap()).collect()
+}
+
+/// Waits until something is found, for a minute at most.
+pub fn wait_for(what: &str, mut found: impl FnMut() -> bool) {
+    let end = Instant::now() + Duration::from_secs(60);
+    while !found() {
+        assert!(Instant::now() < end, "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
 }
