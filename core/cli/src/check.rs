@@ -1,10 +1,11 @@
 //! `rototoon check`: lists every problem of a document and its frames.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, project};
+use crate::progress::{self, Part};
+use crate::{arguments, project};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::pipeline;
-use rototoon::project::{Document, Severity};
+use rototoon::project::{Document, Problems, Severity};
 use rototoon::scene::FrameNumber;
 use std::path::{Component, Path};
 
@@ -27,13 +28,38 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let path = arguments::path(given, "project");
     let document = Document::load(path)?;
     let home = project::home(&document, path);
-    let problems = progress::run(given, path, |bar| {
-        pipeline::check(&document, &home, bar).map_err(|error| Failure::of(error, path))
+    let failed = |error| Failure::of(error, path);
+    let is_asked = given.get_flag("drawings");
+    let (problems, drawings) = progress::run(given, path, |bar| {
+        let problems = pipeline::check(&document, &home, &Part::first(bar, is_asked)).map_err(failed)?;
+        if !is_asked || problems.error_count() > 0 {
+            return Ok((problems, None));
+        }
+        // What was found is told, whatever comes after it.
+        let drawings = pipeline::held(&document, &home, &Part::second(bar)).map_err(failed);
+        let drawings = drawings.inspect_err(|_| drop(say(&document, &problems, path)))?;
+        Ok((problems, Some(drawings)))
     })?;
+    say(&document, &problems, path)?;
+    if problems.error_count() > 0 {
+        return Err(Failure::Reported);
+    }
+    if let Some(beyond) = pipeline::beyond(&document.scene) {
+        line("note", &format!("{}: {beyond}", path.display()));
+    }
+    if let Some(drawings) = drawings {
+        line("note", &format!("{}: {}", path.display(), listed(&drawings)));
+    }
+    line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));
+    Ok(())
+}
+
+/// Says what was found.
+fn say(document: &Document, problems: &Problems, path: &Path) -> Result<(), Failure> {
     if let Some(outside) = outside(&document.scene.footage.pattern) {
         line("note", &format!("{}: footage.pattern: {outside}", path.display()));
     }
-    project::say_gaps(&document, path)?;
+    project::say_gaps(document, path)?;
     for problem in problems.iter() {
         let kind = if problem.severity == Severity::Error { "error" } else { "warning" };
         line(kind, &format!("{}: {problem}", path.display()));
@@ -43,19 +69,6 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
             line(kind, &format!("{}: and {count} more {kind}s", path.display()));
         }
     }
-    if problems.error_count() > 0 {
-        return Err(Failure::Reported);
-    }
-    if let Some(beyond) = pipeline::beyond(&document.scene) {
-        line("note", &format!("{}: {beyond}", path.display()));
-    }
-    if given.get_flag("drawings") {
-        let drawings = progress::run(given, path, |bar| {
-            pipeline::held(&document, &home, bar).map_err(|error| Failure::of(error, path))
-        })?;
-        line("note", &format!("{}: {}", path.display(), listed(&drawings)));
-    }
-    line("note", &format!("{}: usable{}", path.display(), with(problems.warning_count())));
     Ok(())
 }
 

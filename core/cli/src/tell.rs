@@ -99,6 +99,9 @@ pub fn option() -> Arg {
         .value_parser(ways)
 }
 
+/// When a line was told, in seconds, and with which share.
+type Told = (f64, f64);
+
 /// When a line is due.
 #[derive(Clone, Copy, Debug)]
 struct Pace {
@@ -111,12 +114,12 @@ struct Pace {
 }
 
 impl Pace {
-    /// Whether a line is due, by the seconds and the share of the line before; `None` if there was none.
-    fn is_due(self, before: Option<(f64, f64)>, (seconds, share): (f64, f64)) -> bool {
-        before.is_none_or(|(then, told)| {
-            let passed = seconds - then;
-            passed >= self.least && (share - told >= self.grown || passed >= self.most)
-        })
+    /// What is told of this share after the line before; `None` where no line is due. The share that is told never falls, although work in several parts may report less.
+    fn next(self, before: Option<Told>, (seconds, share): Told, is_last: bool) -> Option<Told> {
+        let Some((then, told)) = before else { return Some((seconds, share)) };
+        let passed = seconds - then;
+        let is_due = passed >= self.least && (share - told >= self.grown || passed >= self.most);
+        (is_due || is_last).then_some((seconds, share.max(told)))
     }
 }
 
@@ -126,8 +129,8 @@ pub struct Teller {
     name: String,
     start: Instant,
     bar: ProgressBar,
-    /// Seconds and share of the last line.
-    last: Mutex<Option<(f64, f64)>>,
+    /// The last line.
+    last: Mutex<Option<Told>>,
 }
 
 impl Teller {
@@ -174,14 +177,14 @@ impl Teller {
         // Locked while it is written, so that lines are in their order.
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         let seconds = self.start.elapsed().as_secs_f64();
-        if is_last || self.way.pace().is_due(*last, (seconds, share)) {
-            *last = Some((seconds, share));
-            self.write(&one_line(doing), share, seconds);
+        if let Some(told) = self.way.pace().next(*last, (seconds, share), is_last) {
+            *last = Some(told);
+            self.write(&one_line(doing), told);
         }
     }
 
     /// Writes a line. A closed output is ignored.
-    fn write(&self, doing: &str, share: f64, seconds: f64) {
+    fn write(&self, doing: &str, (seconds, share): Told) {
         let (name, percent) = (&self.name, (1000.0 * share).floor() / 10.0);
         match self.way {
             Way::Lines => line("progress", &format!("{name}: {percent:.0} %, {}, {doing}", spoken(seconds))),
@@ -222,17 +225,19 @@ mod tests {
     #[test]
     fn a_line_is_due_where_the_work_has_moved_and_now_and_then() {
         let pace = Way::Lines.pace();
-        assert!(pace.is_due(None, (0.0, 0.0)), "the first one");
+        assert_eq!(pace.next(None, (0.0, 0.0), false), Some((0.0, 0.0)), "the first one");
         let before = Some((10.0, 0.2));
-        for (now, due) in [
-            ((10.5, 0.9), false),
-            ((11.0, 0.24), false),
-            ((11.0, 0.26), true),
-            ((39.0, 0.21), false),
-            ((40.0, 0.2), true),
+        for (now, share) in [
+            ((10.5, 0.9), None),
+            ((11.0, 0.24), None),
+            ((11.0, 0.26), Some(0.26)),
+            ((39.0, 0.21), None),
+            ((40.0, 0.2), Some(0.2)),
+            ((40.0, 0.1), Some(0.2)),
         ] {
-            assert_eq!(pace.is_due(before, now), due, "{now:?}");
+            assert_eq!(pace.next(before, now, false), share.map(|share| (now.0, share)), "{now:?}");
         }
+        assert_eq!(pace.next(before, (10.1, 1.0), true), Some((10.1, 1.0)), "the last one");
     }
 
     #[test]
@@ -241,7 +246,7 @@ mod tests {
         let (pace, mut last, mut told) = (Way::Lines.pace(), None, 0);
         for k in 0..=7800 {
             let now = (f64::from(k) / 10.0, f64::from(k) / 7800.0);
-            if pace.is_due(last, now) {
+            if let Some(now) = pace.next(last, now, false) {
                 (last, told) = (Some(now), told + 1);
             }
         }

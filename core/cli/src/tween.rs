@@ -1,7 +1,8 @@
 //! `rototoon tween`: makes the in-betweens of drawings on key frames.
 
 use crate::failure::{Failure, line};
-use crate::{arguments, progress, project};
+use crate::progress::{self, Part};
+use crate::{arguments, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rototoon::geometry::Point;
@@ -78,13 +79,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
     let (document, notes, suggested) = progress::run(given, from, |bar| {
-        let done = pipeline::tween(&mut document, &options, follow, bar).map_err(|error| Failure::of(error, from))?;
+        let is_asked = given.get_flag("suggest");
+        let first = Part::first(bar, is_asked);
+        let done =
+            pipeline::tween(&mut document, &options, follow, &first).map_err(|error| Failure::of(error, from))?;
         let notes = [done.holding(), done.exchanging()];
-        if !given.get_flag("suggest") {
+        if !is_asked {
             return Ok((document, notes, None));
         }
         let pictures = pipeline::frames(&document, &home)?;
-        let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), bar)?;
+        let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), &Part::second(bar))?;
         let nothing = || "no breakdown: nothing lies between the keys".to_owned();
         Ok((document, notes, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))
     })?;

@@ -1,8 +1,8 @@
 //! Tests of how commands say how far they are, where nobody looks at a terminal.
 
-use crate::cartoon::{Cartoon, command, read, said, text};
+use crate::cartoon::{Cartoon, command, good, read, said, text};
 use crate::season::Season;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::fs;
 use std::process::Output;
 
@@ -46,6 +46,26 @@ fn programs_read_progress_as_json() {
         assert_eq!(line["event"], "progress");
         assert_eq!(line["document"], text(&cartoon.path("project.json")));
         assert!(line["seconds"].as_f64().unwrap() >= 0.0 && line["step"].is_string(), "{line}");
+    }
+}
+
+#[test]
+fn work_in_two_parts_has_one_progress() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    let mut drawn = read(&project);
+    let line = |x: f64| json!([{"closed": false, "points": [[x, 10], [x, 25], [x, 40]]}]);
+    drawn["drawings"] = json!([{"frame": 0, "strokes": line(8.5)}, {"frame": 6, "strokes": line(26.5)}]);
+    fs::write(&project, drawn.to_string()).unwrap();
+    let out = cartoon.path("out.json");
+    for words in [
+        &["check", text(&project), "--drawings"][..],
+        &["check", text(&project)],
+        &["tween", text(&project), "-o", text(&out), "--suggest"],
+    ] {
+        let said = good(&[words, &["--progress", "json"]].concat());
+        let percents: Vec<f64> = objects(&said).iter().map(|line| line["percent"].as_f64().unwrap()).collect();
+        assert!(rises(&percents) && percents.iter().filter(|percent| **percent == 100.0).count() == 1, "{said}");
     }
 }
 
