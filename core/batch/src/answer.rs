@@ -48,9 +48,9 @@ impl Answer {
     }
 }
 
-/// The line that says how far a step is, without its end.
+/// The line that says how far a step is, without its end. The share is rounded down: 1 is the end alone.
 pub fn at(share: f64, doing: &str) -> String {
-    format!("{AT}{share:.4} {doing}")
+    format!("{AT}{:.4} {doing}", (share * 1e4).floor() / 1e4)
 }
 
 /// How far a step is, and what it does; `None` if the line does not say it.
@@ -95,6 +95,7 @@ mod tests {
             assert_eq!(Answer::read(wrong), None, "{wrong}");
         }
         assert_eq!(read_at(&at(0.42131, "Reading frames")), Some((0.4213, "Reading frames")));
+        assert_eq!([at(0.99999, "a"), at(1.0, "a")], ["at: 0.9999 a", "at: 1.0000 a"]);
         for wrong in ["", "note: at: 0.5 a", "at: 1.5 a", "at: NaN a", "at: 0.5"] {
             assert_eq!(read_at(wrong), None, "{wrong}");
         }

@@ -159,7 +159,8 @@ impl Run<'_> {
             News::At { before, share, doing } => {
                 let step = shot.steps.get(*before).map_or("", Step::name);
                 let all = self.ahead.at(at, (*before, shot.steps.len()), *share);
-                (self.options.at)(all, &format!("{}: {step}: {doing}, {:.0} %", shot.name, 100.0 * share));
+                let percent = (100.0 * share).floor();
+                (self.options.at)(all, &format!("{}: {step}: {doing}, {percent:.0} %", shot.name));
             }
             News::Ends(end) => drop(self.report.line(step_line(shot, end))),
         }

@@ -185,9 +185,10 @@ impl Teller {
 
     /// Writes a line. A closed output is ignored.
     fn write(&self, doing: &str, (seconds, share): Told) {
+        // Rounded down: 100 % is the end alone.
         let (name, percent) = (&self.name, (1000.0 * share).floor() / 10.0);
         match self.way {
-            Way::Lines => line("progress", &format!("{name}: {percent:.0} %, {}, {doing}", spoken(seconds))),
+            Way::Lines => line("progress", &in_a_log(name, percent, seconds, doing)),
             Way::Json => {
                 let seconds = (1000.0 * seconds).round() / 1000.0;
                 let told = json!({"event": "progress", "document": name, "step": doing, "percent": percent, "seconds": seconds});
@@ -201,6 +202,11 @@ impl Teller {
             Way::Bar | Way::Nothing => {}
         }
     }
+}
+
+/// A line of a log.
+fn in_a_log(name: &str, percent: f64, seconds: f64, doing: &str) -> String {
+    format!("{name}: {:.0} %, {}, {doing}", percent.floor(), spoken(seconds))
 }
 
 /// Seconds as a person says them: `12 s`, `3 min 5 s`, `2 h 7 min`.
@@ -251,6 +257,13 @@ mod tests {
             }
         }
         assert!((20..=30).contains(&told), "{told}");
+    }
+
+    #[test]
+    fn all_is_told_at_the_end_alone() {
+        for (percent, text) in [(99.9, "a: 99 %, 7 s, b"), (100.0, "a: 100 %, 7 s, b")] {
+            assert_eq!(in_a_log("a", percent, 7.0, "b"), text);
+        }
     }
 
     #[test]
