@@ -111,8 +111,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
 fn explained(error: PipelineError, from: &Path) -> Failure {
     match error {
         PipelineError::Footage { which: "old", .. } => Failure::Other(format!(
-            "{}\nif the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones",
-            named(&error, from)
+            "{}\n{}: if the old footage is gone, --frame-offset N says how far the new numbers are ahead of the old ones",
+            named(&error, from),
+            from.display()
         )),
         other => Failure::of(other, from),
     }

@@ -160,7 +160,8 @@ fn changed(given: &ArgMatches, document: &Document) -> Result<Vec<String>, Failu
     let (from, asked) = (arguments::path(given, "project"), excerpt(given));
     let draws = extension(given)? == "svg" && asked.parts.is_none();
     let made = if draws { &Made::ALL[..] } else { &[Made::Tracks] };
-    Ok(pipeline::changed(document, &project::home(document, from), made, asked.frames.as_ref())?)
+    pipeline::changed(document, &project::home(document, from), made, asked.frames.as_ref())
+        .map_err(|error| Failure::of(error, from))
 }
 
 fn warn<'a>(to: &Path, warnings: impl Iterator<Item = &'a String>) {

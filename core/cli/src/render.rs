@@ -109,7 +109,8 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     .into_iter()
     .filter_map(|(shows, made)| shows.then_some(made))
     .collect();
-    let changed = pipeline::changed(&document, &home, &made, job.frames.as_ref())?;
+    let changed =
+        pipeline::changed(&document, &home, &made, job.frames.as_ref()).map_err(|error| Failure::of(error, from))?;
     lacking
         .iter()
         .chain(&outdated)

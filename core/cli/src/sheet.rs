@@ -36,7 +36,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     })?;
     let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
     write_whole(to, &bytes)?;
-    let changed = pipeline::changed(&document, &home, &Made::ALL, None)?;
+    let changed = pipeline::changed(&document, &home, &Made::ALL, None).map_err(|error| Failure::of(error, from))?;
     for warning in pipeline::outdated(&document.scene).iter().chain(&pipeline::outside(&document.scene)).chain(&changed)
     {
         line("warning", &format!("{}: {warning}", from.display()));

@@ -79,16 +79,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let options = Options { arcs, leaving, rest: arguments::choice(given, "ends") == "rest", ..Options::default() };
     let follow = arguments::choice(given, "captured") == "follow";
     let (document, notes, suggested) = progress::run(given, from, |bar| {
+        let failed = |error| Failure::of(error, from);
         let is_asked = given.get_flag("suggest");
         let first = Part::first(bar, is_asked);
-        let done =
-            pipeline::tween(&mut document, &options, follow, &first).map_err(|error| Failure::of(error, from))?;
+        let done = pipeline::tween(&mut document, &options, follow, &first).map_err(failed)?;
         let notes = [done.holding(), done.exchanging()];
         if !is_asked {
             return Ok((document, notes, None));
         }
-        let pictures = pipeline::frames(&document, &home)?;
-        let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), &Part::second(bar))?;
+        let pictures = pipeline::frames(&document, &home).map_err(failed)?;
+        let found = pipeline::suggest_breakdown(done.shown, Some(&pictures), &Part::second(bar)).map_err(failed)?;
         let nothing = || "no breakdown: nothing lies between the keys".to_owned();
         Ok((document, notes, Some(found.map_or_else(nothing, |found| format!("breakdown: {}", found.sentence())))))
     })?;

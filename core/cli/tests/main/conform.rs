@@ -70,4 +70,6 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
     fs::write(cartoon.frame(3), "no picture").unwrap();
     let said = refused(&pattern, &[], 1);
     assert!(said.contains("old footage: frame 3: cannot read") && said.contains("--frame-offset"), "{said}");
+    let begin = format!("error: {}: ", text(&document));
+    assert!(said.lines().all(|line| line.starts_with(&begin)), "{said}");
 }

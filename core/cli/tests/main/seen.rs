@@ -78,3 +78,21 @@ fn a_picture_that_was_drawn_again_is_named_wherever_its_results_are_shown() {
     let said = run(folder.path(), &["sheet", "d.json", "-o", "s.png"]);
     assert!(!said.contains("painted") && said.contains("traced") && said.contains("tracked"), "{said}");
 }
+
+#[test]
+fn a_wrong_mark_is_named_with_its_document() {
+    let folder = tempfile::tempdir().unwrap();
+    (0..4).for_each(|frame| picture(frame, 15.0).save(folder.path().join(format!("f_{frame:03}.png"))).unwrap());
+    let mut wrong = document();
+    wrong["seen"] = json!({"tracks": {"0": "x"}});
+    fs::write(folder.path().join("a.json"), wrong.to_string()).unwrap();
+    for words in [
+        &["render", "a.json", "-o", "r_%d.png", "--what", "matte"][..],
+        &["sheet", "a.json", "-o", "s.png"],
+        &["export", "a.json", "-o", "e.nk"],
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon")).args(words).current_dir(folder.path()).output();
+        let said = String::from_utf8(output.unwrap().stderr).unwrap();
+        assert!(said.contains("error: a.json: seen.tracks.\"0\": found \"x\""), "{words:?}: {said}");
+    }
+}

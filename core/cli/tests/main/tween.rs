@@ -157,12 +157,16 @@ fn errors_are_named_and_nothing_is_written() {
     assert_eq!(wrong_use.status.code(), Some(2));
 }
 
-/// What `--suggest` says of a line test. The drawings show a bar that moves by 80 px from frame 2 to frame 10; on the
-/// frames between, the pictures show it at `places`.
-fn suggested(places: &[(i32, f64)]) -> String {
+/// A document with two drawings of a bar that moves by 80 px from frame 2 to frame 10.
+fn moved_bar() -> (tempfile::TempDir, PathBuf) {
     let bar = |x: f64| json!({"closed": false, "points": [[x, 20], [x, 50], [x, 80]]});
-    let (folder, path) = project(json!({"drawings": [
-        {"frame": 2, "spacing": "linear", "strokes": [bar(40.5)]}, {"frame": 10, "strokes": [bar(120.5)]}]}));
+    project(json!({"drawings": [
+        {"frame": 2, "spacing": "linear", "strokes": [bar(40.5)]}, {"frame": 10, "strokes": [bar(120.5)]}]}))
+}
+
+/// What `--suggest` says of a line test of [`moved_bar`]; on the frames between, the pictures show it at `places`.
+fn suggested(places: &[(i32, f64)]) -> String {
+    let (folder, path) = moved_bar();
     for &(frame, place) in places {
         let picture = ImageBuffer::from_fn(200, 100, |x, y| {
             let ink = (f64::from(x) + 0.5 - place).abs() < 1.5 && (20..80).contains(&y);
@@ -251,6 +255,15 @@ fn a_breakdown_is_suggested_where_the_line_test_differs_most() {
     // A picture that is missing is not judged.
     places.remove(6);
     assert!(!suggested(&places).contains("frame 8"));
+}
+
+#[test]
+fn a_picture_that_cannot_be_read_is_named_with_the_document() {
+    let (folder, path) = moved_bar();
+    fs::write(folder.path().join("f_004.png"), "no picture").unwrap();
+    let output = tween(&path, &folder.path().join("out.json"), &["--suggest"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.starts_with(&format!("error: {}: frame 4: cannot read", path.display())), "{said}");
 }
 
 #[test]
