@@ -45,6 +45,7 @@ mod usage;
 
 use clap::{ArgMatches, Command};
 use failure::Failure;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The function that runs a subcommand with its arguments.
@@ -107,7 +108,18 @@ impl Ended {
 fn execute(matches: &ArgMatches) -> Ended {
     let Some((name, arguments)) = matches.subcommand() else { return Ended::With(failure::WRONG_USE) };
     let known = subcommands().into_iter().find(|(command, _)| command.get_name() == name);
+    if let Some(project) = project_of(arguments) {
+        stop::begin(project.display().to_string());
+    }
     ended(known.map_or(Ok(()), |(_, run)| run(arguments)), stop::signal())
+}
+
+/// The project that a subcommand, or one within it, works on.
+fn project_of(arguments: &ArgMatches) -> Option<&PathBuf> {
+    match arguments.subcommand() {
+        Some((_, inner)) => project_of(inner),
+        None => arguments.try_get_one("project").ok().flatten(),
+    }
 }
 
 /// How a subcommand with this result came to its end, where this signal asked it to end. It is said too. A signal may come when the work is all but done: a
@@ -139,6 +151,23 @@ fn main() -> ExitCode {
 mod tests {
     use super::*;
     use rototoon::scene::Cancelled;
+
+    #[test]
+    fn the_project_of_any_subcommand_is_known() {
+        let of = |words: &str| {
+            let matches = program().try_get_matches_from(words.split(' ')).unwrap();
+            project_of(&matches).map(|path| path.display().to_string())
+        };
+        for (words, project) in [
+            ("rototoon check a.json", Some("a.json")),
+            ("rototoon import a.json b.svg -o c.json", Some("a.json")),
+            ("rototoon style clip a.json -o c.json --character x --motion y", Some("a.json")),
+            ("rototoon style library list a", None),
+            ("rototoon job m.json -o c.json", None),
+        ] {
+            assert_eq!(of(words).as_deref(), project, "{words}");
+        }
+    }
 
     #[test]
     fn work_that_was_done_when_a_signal_came_keeps_its_status() {

@@ -6,6 +6,8 @@ use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::channel;
+use std::time::Duration;
 
 /// More frames than are drawn while the test waits.
 const MANY: usize = 20_000;
@@ -137,4 +139,33 @@ fn a_program_that_has_answered_says_nothing_more() {
     line.clear();
     said.read_to_string(&mut line).unwrap();
     assert_eq!((line.as_str(), child.wait().unwrap().signal()), ("", Some(15)));
+}
+
+#[test]
+fn a_command_without_long_work_is_named_too() {
+    let season = Season::new(1);
+    let (document, pipe) = (season.path("in/sh0/project.json"), season.path("in/sh0/pipe.json"));
+    let mut long: Value = serde_json::from_slice(&fs::read(&document).unwrap()).unwrap();
+    // More than a pipe takes, so that the program waits for its reader.
+    long["note"] = json!("a".repeat(1 << 20));
+    fs::write(&document, long.to_string()).unwrap();
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for words in ["export project.json", "absent project.json --part square --frames 1"] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rototoon"));
+        command.current_dir(season.path("in/sh0")).args(words.split(' ')).args(["-o", "pipe.json"]);
+        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        // A pipe opens for reading when the program writes to it.
+        let (send_file, files) = channel();
+        let pipe = pipe.clone();
+        std::thread::spawn(move || send_file.send(fs::File::open(pipe)));
+        let file = files.recv_timeout(Duration::from_secs(60)).expect("it writes the document").unwrap();
+        send("TERM", &child.id().to_string());
+        let (status, said) = end(child);
+        assert_eq!(
+            (status.signal(), said.as_str()),
+            (Some(15), "error: project.json: cancelled by SIGTERM\n"),
+            "{words}"
+        );
+        drop(file);
+    }
 }
