@@ -10,7 +10,8 @@
 //!
 //! Work reports hundreds of steps a second. A log wants few lines, and wants to show that the work goes on. So a line is told at the begin and at the end; between them only where enough
 //! time has passed since the line before, and either the share has grown by enough or much time has passed ([`Pace`]). Nothing is told by a timer: a line always says that the work itself moved, so
-//! a log that stands still means work that does.
+//! a log that stands still means that the step does not move. A batch also says nothing while it waits for another worker or for memory, reads footage to compare it, or draws the
+//! contact sheet of a shot.
 //!
 //! A program that takes steps for a batch tells the batch in lines of their own ([`rototoon_batch::answer`]), whatever its way.
 
