@@ -32,8 +32,13 @@ fn a_log_has_lines_with_the_document_the_percent_and_the_time() {
     let told: Vec<&str> = said.lines().filter_map(|line| line.strip_prefix("progress: ")).collect();
     assert!(told.len() >= 2 && output.stdout.is_empty(), "{said}");
     let [first, last] = [told[0], told[told.len() - 1]];
-    assert!(first.starts_with(&format!("{name}: 0 %, 0 s, ")), "{first}");
-    assert!(last.starts_with(&format!("{name}: 100 %, ")), "{last}");
+    for (line, percent) in [(first, "0 %"), (last, "100 %")] {
+        let rest = line.strip_prefix(&format!("{name}: {percent}, ")).unwrap_or_else(|| panic!("{line}"));
+        let (time, step) = rest.split_once(", ").unwrap_or_else(|| panic!("{line}"));
+        let words: Vec<&str> = time.split(' ').collect();
+        let is_time = |pair: &[&str]| pair[0].parse::<u32>().is_ok() && ["s", "min", "h"].contains(&pair[1]);
+        assert!(words.len().is_multiple_of(2) && words.chunks(2).all(is_time) && !step.is_empty(), "{line}");
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn long_render() -> Season {
 /// Pictures in the folder of the shot, whole or not, under whatever names.
 fn pictures(season: &Season) -> usize {
     fs::read_dir(season.path("out/sh0")).map_or(0, |entries| {
-        entries.filter(|entry| entry.as_ref().unwrap().file_name().to_str().unwrap().contains("m_0")).count()
+        entries.filter(|entry| entry.as_ref().unwrap().file_name().to_str().unwrap().contains("m_")).count()
     })
 }
 
@@ -86,7 +86,7 @@ fn a_shell_sees_the_usual_status() {
     let season = long_render();
     fs::create_dir_all(season.path("out/sh0")).unwrap();
     let script = "\"$0\" render project.json --what matte -o ../../out/sh0/m_%05d.png & child=$!
-        while [ ! -e ../../out/sh0/m_00003.png ]; do sleep 0.02; done; kill -TERM $child; wait $child; echo $?";
+        while [ ! -e ../../out/sh0/m_00003.png ]; do kill -0 $child || exit 9; sleep 0.02; done; kill -TERM $child; wait $child; echo $?";
     let mut shell = Command::new("sh");
     let output = shell.current_dir(season.path("in/sh0")).args(["-c", script, env!("CARGO_BIN_EXE_rototoon")]).output();
     assert_eq!(String::from_utf8(output.unwrap().stdout).unwrap().trim(), "143");
