@@ -104,6 +104,7 @@ fn on_keys(
             .map_err(|error| Failure::of(error, from))?;
         Ok((document, empty))
     })?;
+    project::say_gaps(&document, from)?;
     project::save(document, from, to)?;
     for frame in empty {
         line("note", &format!("frame {frame}: no line was found, so its drawing is empty"));

@@ -74,10 +74,11 @@ fn numbers_of_an_exposure_sheet_hold_the_drawing_before_them() {
     assert_eq!(status, Some(0), "{said}");
     let told = "footage.gaps: 2 of 4 frames have no file and show that of the frame before: 1, 3";
     assert!(said.contains(&format!("note: {told}\n")), "{said}");
-    let output = trace(&path, &out, &[]);
-    assert!(output.status.success());
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.contains(&format!("note: {}: {told}\n", path.display())), "{said}");
+    for words in [&["--drawings", "1"][..], &[]] {
+        let output = trace(&path, &out, words);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && said.contains(&format!("note: {}: {told}\n", path.display())), "{said}");
+    }
     let traced = read(&out);
     assert_eq!(traced["footage"]["gaps"], "held");
     let strokes = |frame: usize| &traced["traced"][frame]["strokes"];
