@@ -25,7 +25,7 @@ function compileJob(job) {
         const task = author.Task(`shots-${first}-${last}`, "misc");
         task.addCommand(author.Command("exec", {
             exe: settings.program,
-            args: ["batch", settings.manifest, "-o", settings.output, "--shots", `${first}-${last}`, "--fine", "all"],
+            args: ["batch", settings.manifest, "-o", settings.output, "--shots", `${first}-${last}`, "--fine", "all", "--progress", "lines"],
         }));
         job.addTask(task);
         page.addDependency(task);
