@@ -13,7 +13,6 @@ mod contrast;
 mod doubts;
 mod error;
 mod excerpt;
-mod exchanges;
 mod fill;
 mod gaps;
 mod guesses;
@@ -48,7 +47,6 @@ pub use conform::{Conformed, NewFootage, conform};
 pub use doubts::{Doubt, doubts, traced_lines};
 pub use error::PipelineError;
 pub use excerpt::{Excerpt, excerpt};
-pub use exchanges::exchanges;
 pub use fill::{
     DOUBT, FillOptions, FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, VanishedColour, fill,
 };

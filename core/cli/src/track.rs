@@ -47,15 +47,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
-    let document = progress::run(given, from, |bar| {
+    let (document, exchanges) = progress::run(given, from, |bar| {
         let tracking =
             pipeline::track(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
         say_ends(&document.scene, &tracking);
-        pipeline::exchanges(&document.scene, &tracking).iter().for_each(|text| line("note", text));
-        Ok(document)
+        Ok((document, tracking.exchanges))
     })?;
     project::say_gaps(&document, from)?;
-    let (report, beyond) = (Report::of(&document.scene), pipeline::beyond(&document.scene));
+    let (report, beyond) = (Report::of(&document.scene, &exchanges), pipeline::beyond(&document.scene));
     project::save(document, from, to)?;
     if let Some(path) = written {
         let json = serde_json::to_vec_pretty(&report).map_err(|error| Failure::Other(error.to_string()))?;

@@ -3,7 +3,7 @@
 use super::unseen;
 use crate::scene::outcome::confidence;
 use crate::scene::{FrameNumber, Outcome, Scene};
-use crate::track::{WeakestFrame, twins, weakest_frame};
+use crate::track::{Exchange, WeakestFrame, twins, weakest_frame};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -18,9 +18,12 @@ pub struct Report {
     pub parts: Vec<PartReport>,
     /// Parts that look alike and lie on one place.
     pub together: Vec<Together>,
+    /// Parts that look alike and may have changed places.
+    pub exchanges: Vec<Together>,
 }
 
-/// Two parts that lie on one place: one of them is wrong there, or hidden by the other one.
+/// Two parts and the frames on which they have something in common: they lie on one place, so one of them is wrong there or hidden by the other one; or
+/// nothing says which is which.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Together {
     /// Their names.
@@ -72,7 +75,7 @@ pub struct PartReport {
 
 impl Report {
     /// The report on a scene with tracks.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &Scene, exchanges: &[Exchange]) -> Self {
         let part = |(index, part): (usize, &crate::scene::Part)| {
             let Outcome { sure, doubtful, lost } = Outcome::of(part);
             let (name, wants_key) = (part.name.clone(), part.wants_key.clone());
@@ -94,7 +97,10 @@ impl Report {
         let together = twins(&scene.parts)
             .into_iter()
             .map(|(pair, frames)| Together { parts: pair.map(|part| scene.parts[part].name.clone()), frames });
-        Self { contours, weakest_frame: weakest, parts, together: together.collect() }
+        let name = |part: usize| scene.parts[part].name.clone();
+        let exchanges =
+            exchanges.iter().map(|found| Together { parts: found.parts.map(name), frames: found.frames.clone() });
+        Self { contours, weakest_frame: weakest, parts, together: together.collect(), exchanges: exchanges.collect() }
     }
 
     /// Lines for a person: one for each part that was tracked, and one for all.
@@ -106,7 +112,8 @@ impl Report {
             lines.push(format!("all {} parts: {}", lines.len(), counted([sure, doubtful, lost])));
         }
         lines.extend(self.parts.iter().filter(|part| !part.unseen.is_empty()).map(PartReport::question));
-        lines.extend(self.together.iter().map(Together::line));
+        lines.extend(self.together.iter().map(Together::on_one_place));
+        lines.extend(self.exchanges.iter().map(Together::exchanged));
         lines.extend(self.weakest_frame.as_ref().and_then(|weakest| self.advice(weakest)));
         lines
     }
@@ -134,9 +141,16 @@ fn quoted(names: &[&String]) -> String {
 }
 
 impl Together {
-    fn line(&self) -> String {
+    fn on_one_place(&self) -> String {
         let [a, b] = &self.parts;
         format!("parts {a:?} and {b:?} lie on one place on {}: a key of one of them parts them", runs(&self.frames))
+    }
+
+    fn exchanged(&self) -> String {
+        let ([a, b], frames) = (&self.parts, runs(&self.frames));
+        format!(
+            "parts {a:?} and {b:?} look alike and may have changed places on {frames}: a key or a pin there says which is which"
+        )
     }
 }
 
@@ -207,7 +221,7 @@ mod tests {
             "all 2 parts: 5 frames sure, 1 doubtful, 3 lost",
             "the next key helps most on frame 4: \"arm\" (lost)",
         ];
-        assert_eq!(Report::of(&scene()).lines(), expected);
+        assert_eq!(Report::of(&scene(), &[]).lines(), expected);
     }
 
     #[test]
@@ -219,14 +233,23 @@ mod tests {
             part.tracks = (1..).zip(places.map(square)).collect();
             part.confidence = (1..4).map(|frame| (frame, vec![0.7; 3])).collect();
         }
-        let lines = Report::of(&scene).lines();
+        let lines = Report::of(&scene, &[]).lines();
         let expected = "parts \"arm\" and \"head\" lie on one place on 2-3: a key of one of them parts them";
         assert!(lines.iter().any(|line| line == expected), "{lines:?}");
     }
 
     #[test]
+    fn parts_that_may_have_changed_places_are_named() {
+        let report = Report::of(&scene(), &[Exchange { parts: [0, 1], frames: vec![2, 3, 4, 7] }]);
+        let expected = "parts \"arm\" and \"head\" look alike and may have changed places on 2-4, 7: a key or a pin there says which is which";
+        assert!(report.lines().iter().any(|line| line == expected), "{:?}", report.lines());
+        let json = serde_json::to_value(report).unwrap();
+        assert_eq!(json["exchanges"], serde_json::json!([{"parts": ["arm", "head"], "frames": [2, 3, 4, 7]}]));
+    }
+
+    #[test]
     fn the_report_holds_all_frames() {
-        let report = serde_json::to_value(Report::of(&scene())).unwrap();
+        let report = serde_json::to_value(Report::of(&scene(), &[])).unwrap();
         assert_eq!(report["contours"], serde_json::json!({"sure": 5, "doubtful": 1, "lost": 3}));
         assert_eq!(report["parts"][0]["lost"], serde_json::json!([4, 5, 7]));
         assert_eq!(report["parts"][0]["confidence"]["3"], 0.6);
