@@ -74,7 +74,7 @@ pub struct PartReport {
 }
 
 impl Report {
-    /// The report on a scene with tracks.
+    /// The report on a scene with tracks, of which tracking found that these parts may have changed places.
     pub fn of(scene: &Scene, exchanges: &[Exchange]) -> Self {
         let part = |(index, part): (usize, &crate::scene::Part)| {
             let Outcome { sure, doubtful, lost } = Outcome::of(part);
