@@ -7,6 +7,7 @@
 mod bare;
 mod beyond;
 mod breakdown;
+pub mod cache;
 mod check;
 mod conform;
 mod contrast;
@@ -81,10 +82,12 @@ use crate::project::{Document, output, validate};
 use crate::scene::{Footage, FrameNumber, Progress, Scene};
 use crate::snap::{SnapOptions, snap_scene};
 use crate::track::{TrackOptions, Tracker, Tracking};
+use cache::FileCache;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use seen::Noted;
 use std::ops::RangeInclusive;
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The pictures of a document in `folder`.
@@ -129,11 +132,37 @@ pub fn track(
     options: &TrackOptions,
     progress: &dyn Progress,
 ) -> Result<Tracking, PipelineError> {
+    track_by(document, folder, Tracker::new(*options), progress)
+}
+
+/// As [`track`]. What a cache knows is not computed again: spans whose keys, corrections and pictures are as they were. The result is the same.
+///
+/// # Errors
+///
+/// As for [`track`].
+pub fn track_with_cache(
+    document: &mut Document,
+    folder: &Path,
+    options: &TrackOptions,
+    cache: &Arc<FileCache>,
+    progress: &dyn Progress,
+) -> Result<Tracking, PipelineError> {
+    let tracking = track_by(document, folder, Tracker::with_cache(*options, cache.clone()), progress)?;
+    cache.trim();
+    Ok(tracking)
+}
+
+fn track_by(
+    document: &mut Document,
+    folder: &Path,
+    mut tracker: Tracker,
+    progress: &dyn Progress,
+) -> Result<Tracking, PipelineError> {
     let frames = frames(document, folder)?;
     memory::to_follow(&document.scene.footage)?;
     gaps::none(&frames, gaps::between_keys(&document.scene))?;
     let noted = Noted::new(&frames);
-    let tracking = Tracker::new(*options).track(&in_effect(&document.scene), &noted, progress)?;
+    let tracking = tracker.track(&in_effect(&document.scene), &noted, progress)?;
     let mut seen = noted.seen();
     seen.retain(|frame, _| tracking.parts.iter().any(|part| part.tracks.contains_key(frame)));
     document.set_seen(Made::Tracks, FrameNumber::MIN..=FrameNumber::MAX, &seen).map_err(|e| fill::field(&e))?;

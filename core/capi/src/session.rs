@@ -7,6 +7,7 @@ use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
+use rototoon::pipeline::cache::FileCache;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
@@ -19,7 +20,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{LazyLock, Mutex};
+use std::sync::{Arc, LazyLock, Mutex};
 
 /// The name of a document without a file, for messages.
 const ORIGIN: &str = "document";
@@ -181,7 +182,7 @@ impl Session {
         pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = pipeline::in_effect(&self.document.scene);
         let tracker =
-            self.trackers.entry(id).or_insert_with(|| Tracker::new(TrackOptions { preset, ..TrackOptions::default() }));
+            self.trackers.entry(id).or_insert_with(|| tracker(TrackOptions { preset, ..TrackOptions::default() }));
         let tracking = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
             tracker.track(&scene, pictures, progress).map_err(|error| match error {
                 TrackError::Cancelled(_) => Failure::Cancelled,
@@ -308,6 +309,17 @@ impl Session {
         self.pictures = None;
         self.trackers.clear();
     }
+}
+
+/// A tracker that finds what earlier sessions and the command line have tracked.
+fn tracker(options: TrackOptions) -> Tracker {
+    FileCache::of_user(None).map_or_else(
+        || Tracker::new(options),
+        |cache| {
+            cache.trim();
+            Tracker::with_cache(options, Arc::new(cache))
+        },
+    )
 }
 
 /// The footage's pictures, opened at first use.

@@ -3,13 +3,16 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::pipeline::cache::FileCache;
 use rototoon::pipeline::{self, Report};
 use rototoon::project::output::check_writable;
 use rototoon::project::write_whole;
 use rototoon::scene::Scene;
 use rototoon::scene::parameters::Stage;
 use rototoon::track::{Ending, Preset, TrackEnd, TrackOptions, Tracking};
+use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// The subcommand.
 pub fn command() -> Command {
@@ -26,6 +29,16 @@ pub fn command() -> Command {
                 .value_name("FILE")
                 .help("Also writes what became of each part as JSON: frames sure, doubtful and lost")
                 .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            Arg::new("cache")
+                .long("cache")
+                .value_name("FOLDER")
+                .help(
+                    "Folder where tracks are kept. Spans with the same keys and pictures as before come from it. By default it is that of the \
+                     variable ROTOTOON_CACHE, or the user's folder for caches; \"none\" computes everything",
+                )
+                .value_parser(value_parser!(OsString)),
         )
         .args(arguments::of_stage(Stage::Track))
         .args(arguments::of_run())
@@ -47,9 +60,14 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
+    let cache = FileCache::of_user(given.get_one::<OsString>("cache").map(OsString::as_os_str)).map(Arc::new);
     let (document, exchanges) = progress::run(given, from, |bar| {
-        let tracking =
-            pipeline::track(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
+        let tracking = match &cache {
+            Some(cache) => pipeline::track_with_cache(&mut document, &home, &options, cache, bar),
+            None => pipeline::track(&mut document, &home, &options, bar),
+        };
+        let tracking = tracking.map_err(|error| Failure::of(error, from))?;
+        say_kept(&tracking);
         say_ends(&document.scene, &tracking);
         Ok((document, tracking.exchanges))
     })?;
@@ -62,6 +80,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     report.lines().iter().chain(&beyond).for_each(|text| line("note", text));
     Ok(())
+}
+
+/// Prints how much was known before.
+fn say_kept(tracking: &Tracking) {
+    let (kept, all) = (tracking.jobs.iter().filter(|job| !job.solved).count(), tracking.jobs.len());
+    if kept > 0 {
+        let text = format!("{kept} of {all} spans have the keys and the pictures of an earlier run, and its tracks");
+        line("note", &text);
+    }
 }
 
 /// Prints where the tracks of parts with a single key end, and where these parts need a key.

@@ -16,10 +16,13 @@ use super::holds::{Holds, is_there};
 use super::store;
 use super::stored::Stored;
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
-use rototoon_base::scene::{Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, PatternError, Raster};
+use rototoon_base::scene::{
+    Colour, Footage, FrameError, FrameNumber, FramePattern, FrameSource, Mark, PatternError, Raster,
+};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
 
 /// Default limit of the bytes of pictures that a sequence keeps.
 pub const KEPT_BYTES: usize = 256 << 20;
@@ -92,6 +95,26 @@ impl Sequence {
     pub fn pictures(&self, frames: &[FrameNumber]) -> Result<Vec<Arc<Raster<Colour>>>, FrameError> {
         let results: Vec<_> = frames.par_iter().map(|&frame| self.picture(frame)).collect();
         results.into_iter().collect()
+    }
+
+    /// The mark of a frame, whose picture this is. It is computed once.
+    pub fn mark_of(&self, frame: FrameNumber, picture: &Raster<Colour>) -> Mark {
+        let shown = self.shown(frame);
+        let known = self.locked().marks.get(&shown).copied();
+        known.map_or_else(
+            || {
+                let mark = mark(picture);
+                self.locked().marks.insert(shown, (self.stamp(frame), mark));
+                mark
+            },
+            |(_, mark)| mark,
+        )
+    }
+
+    /// What changes when the file of a frame does; `None` if nobody knows.
+    fn stamp(&self, frame: FrameNumber) -> Stamp {
+        let data = std::fs::metadata(self.path(frame)).ok()?;
+        Some((data.len(), data.modified().ok()?))
     }
 
     /// Empties the cache, because files may have changed.
@@ -195,7 +218,29 @@ impl Sequence {
     }
 }
 
+/// The hash of a picture: BLAKE3 of its width and of its values.
+pub fn mark(picture: &Raster<Colour>) -> Mark {
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(&(picture.width() as u64).to_le_bytes());
+    let mut bytes = Vec::new();
+    for y in 0..picture.height() {
+        bytes.clear();
+        bytes.extend(picture.row(y).iter().flatten().flat_map(|value| value.to_le_bytes()));
+        hasher.update(&bytes);
+    }
+    *hasher.finalize().as_bytes()
+}
+
 impl FrameSource for Sequence {
+    /// `None` if the file has changed since its picture was marked: some may still have the old picture.
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        let known = self.locked().marks.get(&self.shown(frame)).copied();
+        match known {
+            Some((stamp, mark)) => Ok((stamp == self.stamp(frame)).then_some(mark)),
+            None => Ok(Some(self.mark_of(frame, &*self.picture(frame)?))),
+        }
+    }
+
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
         self.inside(frame)?;
         let shown = self.shown(frame);
@@ -211,11 +256,16 @@ impl FrameSource for Sequence {
     }
 }
 
+/// Length and time of a file.
+type Stamp = Option<(u64, SystemTime)>;
+
 /// The most recently used pictures.
 #[derive(Debug, Default)]
 struct Kept {
     /// Each picture with the time of its last use.
     pictures: BTreeMap<FrameNumber, (Arc<Raster<Colour>>, u64)>,
+    /// The marks of the pictures that were asked for theirs, and what their files were then.
+    marks: BTreeMap<FrameNumber, (Stamp, Mark)>,
     bytes: usize,
     most: usize,
     time: u64,
@@ -285,6 +335,25 @@ mod tests {
             let greys: Vec<_> = pictures.iter().map(|p| (p.get(3, 2)[1] * 255.0).round()).collect();
             assert_eq!(greys, [50.0, 10.0, 60.0, 50.0]);
         }
+    }
+
+    #[test]
+    fn a_mark_is_that_of_the_pixels_and_goes_when_the_file_changes() {
+        let (folder, footage) = footage();
+        let sequence = Sequence::new(&footage, folder.path()).unwrap();
+        let mark = |frame| sequence.mark(frame).unwrap();
+        let path = |frame| folder.path().join(format!("f{frame:03}.png"));
+        assert!(mark(1).is_some() && mark(1) == mark(1) && mark(1) != mark(2));
+        assert_eq!(mark(1), Some(super::mark(&sequence.picture(1).unwrap())));
+        // The picture that was read may still be in use.
+        std::fs::copy(path(3), path(1)).unwrap();
+        assert_eq!(mark(1), None);
+        sequence.forget();
+        assert_eq!((mark(1), mark(2).is_some()), (mark(3), true));
+        let held = Sequence::new(&Footage { held: true, ..footage }, folder.path()).unwrap();
+        std::fs::remove_file(path(5)).unwrap();
+        assert_eq!(held.mark(5).unwrap(), held.mark(4).unwrap(), "a frame without a file shows the one before");
+        assert!(sequence.mark(5).is_err());
     }
 
     #[test]

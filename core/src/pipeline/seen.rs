@@ -15,7 +15,7 @@ use super::{PipelineError, frames};
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::seen::{Made, Seen};
-use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster};
+use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Mark, Raster};
 use blake3::Hash;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
@@ -39,18 +39,29 @@ impl<'a> Noted<'a> {
     pub fn seen(self) -> BTreeMap<FrameNumber, Seen> {
         self.seen.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
+
+    fn is_noted(&self, frame: FrameNumber) -> bool {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner).contains_key(&frame)
+    }
 }
 
 impl FrameSource for Noted<'_> {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
         let picture = self.frames.picture(frame)?;
-        let known = |seen: &BTreeMap<FrameNumber, Seen>| seen.contains_key(&frame);
-        if !known(&self.seen.lock().unwrap_or_else(PoisonError::into_inner)) {
-            let seen =
-                Seen { file: of_file(&self.frames.path(frame)).unwrap_or(0), pixels: short(of_picture(&picture)) };
+        if !self.is_noted(frame) {
+            let pixels = short(self.frames.mark_of(frame, &picture).into());
+            let seen = Seen { file: of_file(&self.frames.path(frame)).unwrap_or(0), pixels };
             self.seen.lock().unwrap_or_else(PoisonError::into_inner).insert(frame, seen);
         }
         Ok(picture)
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        // The picture is noted, also if nothing else is asked of it.
+        if !self.is_noted(frame) {
+            self.picture(frame)?;
+        }
+        self.frames.mark(frame)
     }
 }
 

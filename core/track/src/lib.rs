@@ -59,6 +59,7 @@ pub mod shared;
 pub mod tracker;
 pub mod zhou2011;
 
+pub use contract::cache::Cache;
 pub use contract::error::TrackError;
 pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use contract::tracking::{Ending, Exchange, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};

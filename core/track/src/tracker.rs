@@ -4,6 +4,7 @@
 //! A solver keeps its results, so that after an edit only the affected jobs are solved again. A result depends only on
 //! the scene and the pictures. It does not depend on earlier runs or on the number of threads.
 
+use crate::contract::cache::Cache;
 use crate::contract::error::TrackError;
 use crate::contract::job::SpanSolver;
 use crate::contract::tracking::{SceneSolver, Tracking};
@@ -15,6 +16,7 @@ use crate::shared::part_by_part::PartByPart;
 use crate::zhou2011::Zhou2011;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Part, Progress, Scene};
+use std::sync::Arc;
 
 /// The tracking method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,9 +46,9 @@ impl Preset {
         Self::ALL.iter().find(|(_, name)| *name == id).map(|(preset, _)| *preset)
     }
 
-    fn solver(self, mechanisms: Mechanisms) -> Box<dyn SceneSolver> {
+    fn solver(self, mechanisms: Mechanisms, cache: Option<Arc<dyn Cache>>) -> Box<dyn SceneSolver> {
         match self {
-            Self::Rototoon => Box::new(Rototoon::new(mechanisms)),
+            Self::Rototoon => Box::new(Rototoon::new(mechanisms, cache)),
             Self::Zhou2011 => Box::new(PartByPart::new(Box::new(Zhou2011::default()))),
             Self::Agarwala2004 => Box::new(PartByPart::new(Box::new(Agarwala2004::default()))),
             Self::Liang2012 => Box::new(PartByPart::new(Box::new(Liang2012::default()))),
@@ -72,7 +74,13 @@ pub struct Tracker {
 impl Tracker {
     /// A tracker without any results yet.
     pub fn new(options: TrackOptions) -> Self {
-        Self { solver: options.preset.solver(options.mechanisms), footage: None }
+        Self { solver: options.preset.solver(options.mechanisms, None), footage: None }
+    }
+
+    /// A tracker without any results yet that finds results in a cache, and keeps them there. The pictures need
+    /// [marks](FrameSource::mark). Only the default preset does so.
+    pub fn with_cache(options: TrackOptions, cache: Arc<dyn Cache>) -> Self {
+        Self { solver: options.preset.solver(options.mechanisms, Some(cache)), footage: None }
     }
 
     /// A tracker that solves part by part with the caller's solver.

@@ -30,6 +30,9 @@ pub struct Footage {
     pub held: bool,
 }
 
+/// The hash of a picture.
+pub type Mark = [u8; 32];
+
 /// Gives access to the pictures of a footage. An implementation keeps few of them in memory, so callers request
 /// pictures repeatedly.
 pub trait FrameSource: Sync {
@@ -39,6 +42,16 @@ pub trait FrameSource: Sync {
     ///
     /// A [`FrameError`] names the frame and the file.
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError>;
+
+    /// A mark of the picture of a frame: pictures with the same mark have the same pixels. `None` if the source has no marks. Then
+    /// nothing that was made of its pictures is kept beyond the program.
+    ///
+    /// # Errors
+    ///
+    /// As for [`FrameSource::picture`].
+    fn mark(&self, _frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(None)
+    }
 }
 
 /// What may be wrong with the path of a file that does not exist: it may come from another system, or from a shell.

@@ -44,7 +44,7 @@ pub mod template;
 
 pub use clip::Clip;
 pub use falloff::{Falloff, FalloffCurve};
-pub use footage::{Footage, FrameError, FrameNumber, FrameSource};
+pub use footage::{Footage, FrameError, FrameNumber, FrameSource, Mark};
 pub use outcome::{Outcome, Verdict};
 pub use part::{NoSuchPart, Part, Span};
 pub use pattern::{FramePattern, PatternError};

@@ -6,6 +6,7 @@
 use super::spelling::letters_apart;
 use super::{Colour, Falloff, FrameNumber, palette};
 use crate::geometry::Point;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A contour with its keys, the artist's corrections, and the results of tracking and snapping.
@@ -80,7 +81,7 @@ impl NoSuchPart {
 }
 
 /// The frames between two neighbouring keys of a part, keys included.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Span {
     /// Frame of the earlier key.
     pub first: FrameNumber,

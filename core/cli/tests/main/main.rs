@@ -4,6 +4,7 @@ mod batch;
 mod batch_faults;
 #[cfg(unix)]
 mod budgets;
+mod cached;
 mod cartoon;
 mod command_line;
 mod conform;

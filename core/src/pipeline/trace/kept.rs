@@ -180,15 +180,7 @@ impl Key {
 
 /// The hash of a picture.
 pub(in super::super) fn of_picture(picture: &Raster<Colour>) -> Hash {
-    let mut hasher = Hasher::new();
-    hasher.update(&(picture.width() as u64).to_le_bytes());
-    let mut bytes = Vec::new();
-    for y in 0..picture.height() {
-        bytes.clear();
-        bytes.extend(picture.row(y).iter().flatten().flat_map(|value| value.to_le_bytes()));
-        hasher.update(&bytes);
-    }
-    hasher.finalize()
+    crate::pictures::sequence::mark(picture).into()
 }
 
 #[cfg(test)]

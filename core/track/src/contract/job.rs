@@ -3,6 +3,7 @@
 use super::error::TrackError;
 use rototoon_base::geometry::{Point, polygon};
 use rototoon_base::scene::{FrameSource, Progress, Span};
+use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The artist's corrections on one frame between the keys. Places are in pixels of the picture.
@@ -37,7 +38,7 @@ pub struct Job {
 }
 
 /// The result of a job.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpanTrack {
     /// Control points on each frame of the span, in pixels of the picture. Keys and corrections are exact.
     pub points: Vec<Vec<Point>>,
@@ -48,7 +49,7 @@ pub struct SpanTrack {
 }
 
 /// Why a solver stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Termination {
     /// There is no frame between the keys, or no point is free to move.
     NothingToSolve,
@@ -65,7 +66,7 @@ pub enum Termination {
 }
 
 /// How a solver ended on a job.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpanSummary {
     /// Why it stopped.
     pub termination: Termination,

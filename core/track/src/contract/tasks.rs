@@ -134,6 +134,8 @@ impl<'a> Steps<'a> {
 pub(crate) struct SharedProgress<'a> {
     listener: &'a dyn Progress,
     weights: Vec<f64>,
+    /// By job: the share of its work that is done once its pictures are read.
+    reading: Vec<f64>,
     done: Mutex<Vec<f64>>,
 }
 
@@ -143,7 +145,29 @@ impl<'a> SharedProgress<'a> {
         let weights: Vec<f64> = tasks.iter().map(weight).collect();
         let total: f64 = weights.iter().sum();
         let weights = weights.into_iter().map(|w| w / total).collect();
-        Self { listener, weights, done: Mutex::new(vec![0.0; tasks.len()]) }
+        let none = vec![0.0; tasks.len()];
+        Self { listener, weights, reading: none.clone(), done: Mutex::new(none) }
+    }
+
+    /// The same for jobs that read their pictures first: which share of a job's work that is.
+    pub fn with_reading(self, share: impl Fn(usize) -> f64) -> Self {
+        Self { reading: (0..self.weights.len()).map(share).collect(), ..self }
+    }
+
+    /// The progress of reading the pictures of some jobs.
+    pub fn reading<'b>(&'b self, tasks: &'b [usize]) -> ReadingProgress<'b> {
+        ReadingProgress { shared: self, tasks }
+    }
+
+    /// Notes how much of some jobs is done, and reports the whole.
+    fn tell(&self, step: &str, jobs: impl Iterator<Item = (usize, f64)>) -> Result<(), Cancelled> {
+        // The listener is called under the lock, so that the reported share never decreases.
+        let mut all = self.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        for (task, done) in jobs {
+            all[task] = all[task].max(done.clamp(0.0, 1.0));
+        }
+        let share: f64 = all.iter().zip(&self.weights).map(|(d, w)| d * w).sum();
+        self.listener.report(step, share.min(1.0))
     }
 
     pub fn of(&self, task: usize) -> JobProgress<'_> {
@@ -159,10 +183,19 @@ pub(crate) struct JobProgress<'a> {
 
 impl Progress for JobProgress<'_> {
     fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
-        // The listener is called under the lock, so that the reported share never decreases.
-        let mut all = self.shared.done.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        all[self.task] = all[self.task].max(done.clamp(0.0, 1.0));
-        let share: f64 = all.iter().zip(&self.shared.weights).map(|(d, w)| d * w).sum();
-        self.shared.listener.report(step, share.min(1.0))
+        let read = self.shared.reading[self.task];
+        self.shared.tell(step, std::iter::once((self.task, read + (1.0 - read) * done.clamp(0.0, 1.0))))
+    }
+}
+
+/// The progress of reading the pictures of some of these jobs.
+pub(crate) struct ReadingProgress<'a> {
+    shared: &'a SharedProgress<'a>,
+    tasks: &'a [usize],
+}
+
+impl Progress for ReadingProgress<'_> {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        self.shared.tell(step, self.tasks.iter().map(|&task| (task, self.shared.reading[task] * done)))
     }
 }

@@ -53,8 +53,8 @@ pub(super) struct Broad<'a> {
     pub tasks: &'a [Task],
     /// The stretch's members as indices of tasks.
     pub stretch: &'a [usize],
-    /// The pools of all tasks.
-    pub pooled: &'a [Arc<Pooled>],
+    /// The pools of the tasks of this stretch, and of others.
+    pub pooled: &'a [Option<Arc<Pooled>>],
     /// The pools of the members, with the hypotheses of the joint choice.
     pub mended: &'a [Arc<Pooled>],
     /// The chosen paths of the members.
@@ -84,6 +84,11 @@ impl<'a> Film<'a> {
     /// The scene without corrections and corrective keys. `None` if it has none.
     pub fn untouched(&self) -> Option<&Scene> {
         self.untouched.as_ref()
+    }
+
+    /// The scene in its three forms.
+    pub fn forms(&self) -> [&Scene; 3] {
+        [self.scene, self.fine(), self.broad()]
     }
 
     /// The scene with complete corrections as keys.
@@ -193,7 +198,7 @@ impl Rototoon {
         fine: &[Task],
         (frames, progress): (&Looks, &JobProgress),
     ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
-        let hidden = |&task: &Task| occluders(film.fine(), broad.tasks, |o| Some(&*broad.pooled[o]), task);
+        let hidden = |&task: &Task| occluders(film.fine(), broad.tasks, |o| broad.pooled[o].as_deref(), task);
         let jobs: Vec<Job> = fine.iter().map(|task| job(film.fine(), *task, hidden(task))).collect();
         let results: Vec<Result<FoundPools, TrackError>> =
             jobs.par_iter().with_max_len(1).map(|job| self.pool(self.kit(frames, progress), job)).collect();

@@ -21,6 +21,7 @@
 //! any drawn sign of it is held.
 
 use super::confidence::HELD;
+use super::facts::Pair;
 use super::stage::Kit;
 use crate::contract::error::TrackError;
 use crate::contract::tracking::{PartTrack, Tracking};
@@ -29,7 +30,8 @@ use crate::shared::store::FLOW_LEVEL;
 use crate::shared::within::Region;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
-use rototoon_base::scene::{FrameNumber, Scene};
+use rototoon_base::scene::{FrameNumber, Scene, Span};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -55,16 +57,46 @@ pub(super) struct Memory {
 }
 
 /// By the frame of a contour and the one that it was compared with: the answers for each shift.
-type Asked = BTreeMap<(FrameNumber, FrameNumber), Vec<Answer>>;
+type Asked = BTreeMap<Pair, Vec<Answer>>;
 
-struct Answer {
+/// What was asked for a contour.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Answer {
     contour: Vec<Point>,
     shift: Point,
     found: Option<Point>,
 }
 
 /// By frame the pan to the next one, as far as a part has asked for it, and the contours around which it was measured.
-type Pans = BTreeMap<FrameNumber, (Vec<Vec<Point>>, Option<Point>)>;
+type Pans = BTreeMap<FrameNumber, Pan>;
+/// Contours, and the pan around them.
+pub(super) type Pan = (Vec<Vec<Point>>, Option<Point>);
+
+impl Memory {
+    /// Whether nothing was asked yet.
+    pub fn is_empty(&self) -> bool {
+        self.asked.is_empty() && self.pans.is_empty()
+    }
+
+    /// What was found between the frames of a span: answers by name and pair of frames, and pans by frame.
+    pub fn within(&self, span: Span) -> (Vec<(String, Pair, Vec<Answer>)>, Vec<(FrameNumber, Pan)>) {
+        let is_in = |frame: FrameNumber| span.first <= frame && frame <= span.last;
+        let of_part = |(name, asked): (&String, &Asked)| {
+            let own = asked.iter().filter(|((a, b), _)| is_in(*a) && is_in(*b));
+            own.map(|(pair, answers)| (name.clone(), *pair, answers.clone())).collect::<Vec<_>>()
+        };
+        let pans = self.pans.iter().filter(|(before, _)| is_in(**before) && is_in(**before + 1));
+        (self.asked.iter().flat_map(of_part).collect(), pans.map(|(frame, pan)| (*frame, pan.clone())).collect())
+    }
+
+    /// Adds what was found in the same pictures.
+    pub fn add(&mut self, asked: Vec<(String, Pair, Vec<Answer>)>, pans: Vec<(FrameNumber, Pan)>) {
+        for (name, pair, answers) in asked {
+            self.asked.entry(name).or_default().entry(pair).or_default().extend(answers);
+        }
+        self.pans.extend(pans);
+    }
+}
 
 struct View<'a> {
     kit: Kit<'a>,

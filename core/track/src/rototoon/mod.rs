@@ -24,6 +24,8 @@
 //! 7. **Holds.** Frames that show one drawing of a part over a background that moves take one contour ([`holds`]).
 //! 8. **Exchanges.** Parts that look alike and may have changed places are doubted ([`exchange`](mod@exchange)).
 //!
+//! **Cache.** The tracks of a stretch can be kept beyond the program ([`cached`](mod@cached)).
+//!
 //! **Memory.** Each step is a pure function of its input, and its last result is kept. A pin on one part does not
 //! change the pools of other parts. Stretches without a change keep their choices ([`chosen`]), and drawings without one what
 //! was looked for there ([`mend`](mod@mend)). The tracks of other parts are computed again only if the choice changes them.
@@ -36,6 +38,7 @@
 //! wide as high.
 
 mod alike;
+mod cached;
 mod choice;
 mod chosen;
 pub mod confidence;
@@ -43,6 +46,7 @@ mod corrected;
 mod corrective;
 pub mod evidence;
 mod exchange;
+mod facts;
 mod figures;
 mod finer;
 mod finish;
@@ -59,6 +63,7 @@ mod pooling;
 mod pools;
 pub mod propagate;
 pub mod refine;
+mod run;
 pub mod search;
 pub mod select;
 pub mod stage;
@@ -69,15 +74,18 @@ pub mod through;
 mod turns;
 mod untouched;
 
+use crate::contract::cache::Cache;
 use crate::contract::error::TrackError;
-use crate::contract::tasks::{SharedProgress, Steps, Task, tasks};
+use crate::contract::tasks::{SharedProgress, Task, tasks};
 use crate::contract::tracking::{SceneSolver, Tracking};
+use crate::shared::drawings::Drawing;
 use crate::shared::look::kind::Decided;
 use crate::shared::look::{Kind, Looks};
 use crate::shared::store::Store;
 use crate::shared::twins;
+use cached::Stretches;
 use figures::Figures;
-use finer::{Broad, Film, Found};
+use finer::Film;
 use finish::{Finish, Finished, finish};
 use joint::shadow::Memory;
 use mechanisms::{Mechanism, Mechanisms};
@@ -85,19 +93,16 @@ use mend::{Extended, Guide};
 use outward::plan::Portion;
 use pooled::Pooled;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use rototoon_base::scene::{Footage, FrameNumber, FrameSource, Progress, Scene, Span};
+use rototoon_base::scene::{Footage, FrameSource, Progress, Scene, Span};
+use run::READING;
 use stage::Kit;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
-use untouched::{Done, Untouched};
+use untouched::Untouched;
 
 /// Largest ratio of width to height of a picture. The tracker works on [540 lines](crate::shared::features), so a strip of few
 /// lines would be enlarged to hundreds of millions of pixels.
 pub const WIDEST: usize = 32;
-/// Share of the progress that reading and comparing the pictures take in a first run. On the sample cartoon it is two fifths of the time.
-const READING: f64 = 0.4;
-/// Share of that which the pictures' features take; the flows between drawings take the rest.
-const FEATURES: f64 = 0.5;
 
 /// The solver of the default preset.
 #[derive(Default)]
@@ -118,6 +123,13 @@ pub struct Rototoon {
     outward: outward::plan::Memory,
     holds: holds::Memory,
     mechanisms: Mechanisms,
+    cache: Option<Arc<dyn Cache>>,
+    /// The stretches of the last run, if there is a cache.
+    stretches: Option<Stretches>,
+    /// Drawings of the spans that came from it.
+    from_cache: cached::Drawings,
+    /// In tests: of how many frames the store keeps what was computed.
+    pub(crate) room: Option<usize>,
 }
 
 /// Pools with the hypotheses from a joint choice, and their sources.
@@ -154,18 +166,23 @@ impl SceneSolver for Rototoon {
             self.outward = outward;
             result?;
         }
+        let stretches = self.stretches.take();
+        let unknown = stretches.as_ref().map(|stretches| self.recall(stretches));
         if self.mechanisms.has(Mechanism::Holds) {
             self.holds = holds::unite(self.kit(&looks, progress), scene, &mut tracking, &self.holds)?;
         }
         if self.mechanisms.has(Mechanism::Exchanges) {
             exchange::doubt(self.kit(&looks, progress), scene, &mut tracking)?;
         }
+        if let (Some(stretches), Some(unknown)) = (&stretches, unknown) {
+            self.note(stretches, &unknown);
+        }
         twins::doubt(scene, &mut tracking.parts);
         Ok(tracking)
     }
 
     fn forget(&mut self) {
-        *self = Self::new(self.mechanisms);
+        *self = Self::new(self.mechanisms, self.cache.take());
     }
 }
 
@@ -175,9 +192,9 @@ pub fn too_wide(footage: &Footage) -> bool {
 }
 
 impl Rototoon {
-    /// A solver without any results yet, with the mechanisms given.
-    pub fn new(mechanisms: Mechanisms) -> Self {
-        Self { mechanisms, ..Self::default() }
+    /// A solver without any results yet, with the mechanisms given. It finds and keeps results in a cache, if it has one.
+    pub fn new(mechanisms: Mechanisms, cache: Option<Arc<dyn Cache>>) -> Self {
+        Self { mechanisms, cache, ..Self::default() }
     }
 
     /// For studies of confidence: the evidence of the last run.
@@ -200,7 +217,7 @@ impl Rototoon {
         };
         if kind != before {
             let (store, kind) = (std::mem::take(&mut self.store), std::mem::take(&mut self.kind));
-            *self = Self { store, kind, ..Self::new(self.mechanisms) };
+            *self = Self { store, kind, ..Self::new(self.mechanisms, self.cache.take()) };
         }
         Ok(Looks { frames, kind })
     }
@@ -221,10 +238,9 @@ impl Rototoon {
     ) -> Result<Tracking, TrackError> {
         let scene = film.broad();
         let unread = if tasks.iter().all(|task| self.knows(scene, task)) { 0.0 } else { READING };
-        self.read(scene, tasks, frames, &Portion { listener: progress, range: [0.0, unread] })?;
-        // A run without corrections and one with them, if there are any.
-        let half = if film.untouched().is_some() { 0.5 * (1.0 + unread) } else { unread };
-        let first = Portion { listener: progress, range: [unread, half] };
+        // A run without corrections and one with them, if there are any. The first one reads the pictures.
+        let half = if film.untouched().is_some() { 0.5 * (1.0 + unread) } else { 0.0 };
+        let first = Portion { listener: progress, range: [0.0, half] };
         let untouched = self.untouched(film, tasks, frames, &first)?;
         let rest = Portion { listener: progress, range: [half, 1.0] };
         let (mut done, finer) = self.run(scene, Some(film), tasks, frames, &rest)?;
@@ -236,77 +252,9 @@ impl Rototoon {
         Ok(film.assembled(tasks, done, finer))
     }
 
-    /// Tracks the parts of a scene together, and with a `film` also those with corrective keys between all of their keys.
-    fn run(
-        &mut self,
-        scene: &Scene,
-        film: Option<&Film>,
-        tasks: &[Task],
-        frames: &Looks,
-        progress: &dyn Progress,
-    ) -> Result<(Done, Found), TrackError> {
-        let shared = SharedProgress::new(progress, scene, tasks);
-        let (pooled, fresh) = self.pool_all(scene, tasks, frames, &shared)?;
-        let mut done: Done = vec![None; tasks.len()];
-        let mut finer = Found::new();
-        let stretches = stretches(tasks);
-        let wobble = self.wobble(&stretches, &pooled);
-        for stretch in stretches {
-            let of = (scene, tasks, &stretch[..]);
-            let sources: Vec<Arc<Pooled>> = stretch.iter().map(|&t| pooled[t].clone()).collect();
-            let first = self.first_choice(of, sources.clone(), frames, &shared.of(stretch[0]))?;
-            let guides = (&first.paths[..], &first.leads[..], first.claims.as_ref());
-            let mended = self.mend_all(&stretch, &sources, guides, frames, &shared)?;
-            let second = self.second_choice(of, &first, &mended);
-            let members: Vec<&Pooled> = mended.iter().map(|m| &**m).collect();
-            let paths = &second.paths;
-            let hiding = self.mechanisms.has(Mechanism::Hiding);
-            let plan = |m: usize| Finish::of(scene, tasks, &stretch, &members, paths, (m, hiding));
-            let plans = (0..members.len()).map(plan).collect();
-            let new = self.finish_all(&stretch, &mended, plans, frames, &shared)?;
-            let drawn = self.steadied(&stretch, &mended, &wobble, frames, &shared)?;
-            let tracks = self.tracks(&mended, &new, (drawn, second.margins.clone()));
-            let (stretch, pooled, mended, wobble) = (&stretch, &pooled, &mended, &wobble);
-            let broad = Broad { tasks, stretch, pooled, mended, paths, wobble };
-            for (m, (&t, (track, new))) in stretch.iter().zip(tracks).enumerate() {
-                if let Some(film) = film {
-                    finer.append(&mut self.finer(film, &broad, (m, &track), frames, &shared)?);
-                }
-                shared.of(t).report("Tracking", 1.0)?;
-                done[t] = Some((track, new || fresh[t]));
-            }
-        }
-        Ok((done, finer))
-    }
-
-    /// Computes the features and flows that many tasks need, before the tasks are given to threads, which would wait
-    /// for each other.
-    fn read(&self, scene: &Scene, tasks: &[Task], frames: &Looks, progress: &dyn Progress) -> Result<(), TrackError> {
-        let kit = self.kit(frames, progress);
-        let new = tasks.iter().filter(|task| !self.knows(scene, task));
-        let spans: BTreeSet<Span> = new.map(|task| task.span).collect();
-        let numbers: BTreeSet<FrameNumber> = spans.iter().flat_map(Span::frames).collect();
-        let first = Portion { listener: progress, range: [0.0, FEATURES] };
-        kit.plain.0.expect(numbers.len());
-        kit.store.read(kit.frames, &Vec::from_iter(numbers), &first)?;
-        let mut pairs = BTreeSet::new();
-        for span in spans {
-            let report = || Ok(progress.report("Reading frames", FEATURES)?);
-            let held = kit.held(&Vec::from_iter(span.frames()), &report)?;
-            let mut before = span.first;
-            for (frame, held) in (span.first + 1..=span.last).zip(held) {
-                if !held {
-                    pairs.extend([(before, frame), (frame, before)]);
-                    before = frame;
-                }
-            }
-        }
-        let rest = Portion { listener: progress, range: [FEATURES, 1.0] };
-        let steps = Steps::new(&rest, "Comparing drawings", pairs.len());
-        Vec::from_iter(pairs)
-            .par_iter()
-            .with_max_len(1)
-            .try_for_each(|&(from, to)| steps.step(|| kit.store.flow(kit.frames, from, to).map(|_| ())))
+    /// The drawings of a span, found in this run or an earlier one, or kept in the cache.
+    fn drawings(&self, key: &(String, Span)) -> Option<&[Drawing]> {
+        self.plain.get(key).map(|plain| &*plain.drawings).or_else(|| self.from_cache.get(key).map(|found| &**found))
     }
 
     /// Whether a task was solved in an earlier run.
@@ -318,6 +266,7 @@ impl Rototoon {
     fn keep_only(&mut self, film: &Film) {
         let present = film.keys();
         self.plain.retain(|key, _| present.contains(key));
+        self.from_cache.retain(|key, _| present.contains(key));
         self.corrected.retain(|key, _| present.contains(key));
         self.mended.retain(|key, _| present.contains(key));
         self.finished.retain(|key, _| present.contains(key));
@@ -364,22 +313,4 @@ impl Rototoon {
         }
         Ok(new)
     }
-}
-
-/// Groups of tasks whose spans share more than a key frame, directly or through others, in the order of time.
-fn stretches(tasks: &[Task]) -> Vec<Vec<usize>> {
-    let mut order: Vec<usize> = (0..tasks.len()).collect();
-    order.sort_by_key(|&t| (tasks[t].span, t));
-    let mut stretches: Vec<(FrameNumber, Vec<usize>)> = Vec::new();
-    for t in order {
-        let span = tasks[t].span;
-        match stretches.last_mut() {
-            Some((end, members)) if span.first < *end => {
-                *end = (*end).max(span.last);
-                members.push(t);
-            }
-            _ => stretches.push((span.last, vec![t])),
-        }
-    }
-    stretches.into_iter().map(|(_, members)| members).collect()
 }

@@ -16,32 +16,32 @@ use crate::contract::tasks::{SharedProgress, Task, job, nearer_contours, next_wa
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Scene};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The pools of a job without and with its corrections, and whether any of them was computed in this run.
 pub(super) type FoundPools = (Arc<Pooled>, Arc<Pooled>, bool);
 
 impl Rototoon {
-    /// The pools of all tasks, and whether they were computed in this run.
+    /// Makes the pools of some tasks: all those of some stretches. `pooled` gets them, and `fresh` whether they were computed in this run.
     pub(super) fn pool_all(
         &mut self,
-        scene: &Scene,
-        tasks: &[Task],
+        (scene, tasks, asked): (&Scene, &[Task], &[usize]),
+        (pooled, fresh): (&mut [Option<Arc<Pooled>>], &mut [bool]),
         frames: &Looks,
         shared: &SharedProgress,
-    ) -> Result<(Vec<Arc<Pooled>>, Vec<bool>), TrackError> {
-        let mut done: Vec<Option<(Arc<Pooled>, bool)>> = vec![None; tasks.len()];
+    ) -> Result<(), TrackError> {
         // The contours of nearer parts on a task's keys must be known, also where these parts are between two keys of
         // their own.
         let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
         let waits = |task: &Task, other: &Task| {
             scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
         };
-        while let Some(wave) = next_wave(tasks, |t| done[t].is_some(), waits) {
+        let asked: BTreeSet<usize> = asked.iter().copied().collect();
+        while let Some(wave) = next_wave(tasks, |t| !asked.contains(&t) || pooled[t].is_some(), waits) {
             let jobs: Vec<Job> = wave
                 .iter()
-                .map(|&t| job(scene, tasks[t], occluders(scene, tasks, |o| Some(&done[o].as_ref()?.0), tasks[t])))
+                .map(|&t| job(scene, tasks[t], occluders(scene, tasks, |o| pooled[o].as_deref(), tasks[t])))
                 .collect();
             let results: Vec<Result<FoundPools, TrackError>> = wave
                 .par_iter()
@@ -60,10 +60,10 @@ impl Rototoon {
                 let key = plain.key();
                 self.plain.insert(key.clone(), plain);
                 self.corrected.insert(key, with_corrections.clone());
-                done[t] = Some((with_corrections, solved));
+                (pooled[t], fresh[t]) = (Some(with_corrections), solved);
             }
         }
-        Ok(done.into_iter().flatten().unzip())
+        Ok(())
     }
 
     /// The pools of a stretch's members with the hypotheses that their joint choice adds.

@@ -23,19 +23,19 @@ const ROUNDS: usize = 3;
 type Drawn = Vec<Vec<Point>>;
 
 impl Rototoon {
-    /// How much the film wobbles, by where each part alone goes without corrections.
-    pub(super) fn wobble(&self, stretches: &[Vec<usize>], pooled: &[Arc<Pooled>]) -> Wobble {
-        if !self.mechanisms.has(Mechanism::Steadying) {
-            return Wobble::default();
-        }
+    /// Where each member of a stretch goes alone, without corrections.
+    pub(super) fn alone(&self, stretch: &[usize], pooled: &[Option<Arc<Pooled>>]) -> Vec<Member> {
         let alone = |&t: &usize| {
-            let plain = self.plain.get(&pooled[t].key())?;
+            let plain = self.plain.get(&pooled[t].as_ref()?.key())?;
             let points = plain.pools.iter().zip(&plain.path).map(|(pool, &h)| pool[h].points.clone()).collect();
             Some(member(plain, points))
         };
-        let groups: Vec<Vec<Member>> =
-            stretches.iter().map(|stretch| stretch.iter().filter_map(alone).collect()).collect();
-        Wobble::measured(&groups)
+        stretch.iter().filter_map(alone).collect()
+    }
+
+    /// How much the film wobbles, by where the members of each stretch go alone.
+    pub(super) fn wobble(&self, alone: &[Vec<Member>]) -> Wobble {
+        if self.mechanisms.has(Mechanism::Steadying) { Wobble::measured(alone) } else { Wobble::default() }
     }
 
     /// The control points of a stretch's members on each of their drawings, steadied and refined by turns.

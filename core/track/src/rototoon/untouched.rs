@@ -113,11 +113,11 @@ impl Rototoon {
     pub(super) fn settle(&self, scene: &Scene, tasks: &[Task], untouched: &Done, done: &mut Done) {
         for ((task, now), before) in tasks.iter().zip(done).zip(untouched) {
             let part = &scene.parts[task.part];
-            let source = self.plain.get(&(part.name.clone(), task.span));
-            let (Some((now, _)), Some((before, _)), Some(source)) = (now, before, source) else { continue };
+            let drawings = self.drawings(&(part.name.clone(), task.span));
+            let (Some((now, _)), Some((before, _)), Some(drawings)) = (now, before, drawings) else { continue };
             if !is_corrected(part, task.span) {
                 // The key drawings are the same in both.
-                keep_unless_surer(now, before, (0, &source.drawings), CLEARLY);
+                keep_unless_surer(now, before, (0, drawings), CLEARLY);
             }
         }
     }

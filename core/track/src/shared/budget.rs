@@ -39,6 +39,11 @@ impl Budget {
         Self { features: self.features.max(bytes), ..self }
     }
 
+    /// Number of frames that it is large enough for; at least 1.
+    pub fn room(self) -> usize {
+        (self.bytes() / (FOR_EACH * self.features).max(1)).max(1)
+    }
+
     /// Number of bytes.
     pub fn bytes(self) -> usize {
         self.frames.saturating_mul(FOR_EACH).saturating_mul(self.features).min(self.most).max(LEAST)

@@ -5,10 +5,11 @@
 //! what the part does there.
 
 use crate::contract::job::Job;
+use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
 /// Neighbouring frames of a span that show one drawing, as frame indices in the span. A drawing has at least one frame.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Drawing {
     /// Index of the first frame.
     pub first: usize,

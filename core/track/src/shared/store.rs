@@ -11,7 +11,7 @@ use super::sought::Sought;
 use crate::contract::error::TrackError;
 use crate::contract::tasks::Steps;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
+use rototoon_base::scene::{FrameNumber, FrameSource, Progress, Span};
 use rototoon_image::flow::{Flow, Pyramid, dense_flow};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -32,6 +32,8 @@ struct Kept {
     bytes: usize,
     budget: Budget,
     entries: BTreeMap<Key, Entry>,
+    /// Whether two frames show the same drawing. These are so small that all are kept.
+    same: BTreeMap<(FrameNumber, FrameNumber), bool>,
     making: BTreeSet<Key>,
 }
 
@@ -41,7 +43,6 @@ enum Key {
     Pyramid(FrameNumber),
     Flow(FrameNumber, FrameNumber),
     Sought(FrameNumber, usize),
-    Same(FrameNumber, FrameNumber),
 }
 
 #[derive(Clone)]
@@ -50,7 +51,6 @@ enum Value {
     Pyramid(Arc<Pyramid>),
     Flow(Arc<Flow>),
     Sought(Arc<Sought>),
-    Same(bool),
 }
 
 struct Entry {
@@ -100,6 +100,12 @@ impl Store {
     pub fn expect(&self, frames: usize) {
         let mut kept = self.lock();
         kept.budget = kept.budget.raised(frames);
+    }
+
+    /// Of how many frames the store keeps all that is computed from them, for frames such as this one.
+    pub fn room(&self, frames: &dyn FrameSource, frame: FrameNumber) -> Result<usize, TrackError> {
+        self.features(frames, frame)?;
+        Ok(self.lock().budget.room())
     }
 
     /// Computes the features of several frames, each once, as far as they fit into half of the budget.
@@ -200,13 +206,25 @@ impl Store {
 
     /// Whether two frames show the same drawing.
     fn same(&self, frames: &dyn FrameSource, a: FrameNumber, b: FrameNumber) -> Result<bool, TrackError> {
-        let key = Key::Same(a, b);
-        if let Some(Value::Same(known)) = self.get(key) {
+        let known = self.lock().same.get(&(a, b)).copied();
+        if let Some(known) = known {
             return Ok(known);
         }
         let same = same_drawing(&*self.features(frames, a)?, &*self.features(frames, b)?);
-        self.put(key, size_of::<Entry>(), Value::Same(same));
+        self.lock().same.insert((a, b), same);
         Ok(same)
+    }
+
+    /// Which pairs of frames of a span are known to show the same drawing, and which are not.
+    pub fn known_same(&self, span: Span) -> Vec<((FrameNumber, FrameNumber), bool)> {
+        let kept = self.lock();
+        let within = kept.same.iter().filter(|((a, b), _)| span.first <= *a.min(b) && *a.max(b) <= span.last);
+        within.map(|(pair, same)| (*pair, *same)).collect()
+    }
+
+    /// Adds what is known of these pictures.
+    pub fn know_same(&self, pairs: Vec<((FrameNumber, FrameNumber), bool)>) {
+        self.lock().same.extend(pairs);
     }
 
     /// Forgets everything.

@@ -4,6 +4,7 @@
 mod absence;
 mod borders;
 mod branches;
+mod cached;
 mod holds;
 mod limbs;
 mod memory;

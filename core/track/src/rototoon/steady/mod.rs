@@ -36,6 +36,7 @@ use motion::Motion;
 use noise::{Differences, Split};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Span;
+use serde::{Deserialize, Serialize};
 use together::{Pairs, Series};
 
 /// Farthest that a contour is moved, in working pixels: root mean square over its points.
@@ -57,6 +58,7 @@ const OF_MOTION: f64 = 1.0 / 3.0;
 const OF_SHAPE: f64 = 4.0;
 
 /// A part between two keys, as it was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     /// What it is remembered by.
     pub key: (String, Span),
@@ -104,6 +106,12 @@ impl Wobble {
     /// Whether contours are changed at all.
     pub fn steadies(&self) -> bool {
         self.steadies
+    }
+
+    /// What the parts of a stretch depend on besides themselves: noise and motion of poses and of shapes, as far as contours are changed.
+    pub fn of_film(&self) -> Option<[f64; 4]> {
+        let Self { pose, shape, .. } = self;
+        self.steadies.then_some([pose.noise, pose.motion, shape.noise, shape.motion])
     }
 
     /// The control points of the parts of one stretch of time on each of their drawings, steadied.
