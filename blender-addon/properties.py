@@ -14,6 +14,7 @@ class RototoonSettings(BoneSettings, ClipSettings, FillSettings, LineSettings, C
     """Everything that a file keeps of an object beside its strokes."""
 
     extra: bpy.props.StringProperty(description="Fields of the document that this version does not know, as JSON")
+    known_files: bpy.props.StringProperty(description="What the documents held from which the object was read, or to which it was written, as JSON")
 
 
 CLASSES = (RototoonPart, RototoonBone, RototoonRecolour, RototoonSettings, RototoonClip, RototoonBrowser)

@@ -170,11 +170,6 @@ def text(folder: str, document: Mapping[str, Any]) -> str:
     return json.dumps({**document, "footage": shot}, allow_nan=False, separators=(",", ":")) + "\n"
 
 
-def save(path: str, document: dict[str, Any]) -> None:
-    """Writes a document. The file is complete, or it does not appear."""
-    put(path, text(os.path.dirname(os.path.abspath(path)), document))
-
-
 def put(path: str, content: str) -> None:
     """Writes a file of text. It is complete, or it does not appear."""
     unfinished = f"{path}.{os.getpid()}.unfinished"

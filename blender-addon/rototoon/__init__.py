@@ -27,7 +27,7 @@ nothing has changed then.
 `strokes`             matching, fitting and hidden lines of strokes, without a session
 `tween`               in-betweens of drawings
 `style`               skeleton clips, and drawings that follow them
-`documents`           helpers for documents
+`documents`           helpers for documents, and for files that other programs may write too
 `about`               version, path and parameters of the native library
 `native`              the native library: loading, handles, errors
 ====================  ==============================================================================

@@ -61,6 +61,9 @@ class Session:
 
         If the file is in another folder than the session, a relative footage pattern is rewritten to name the same files.
         A frame of the footage is refused as a name.
+
+        What another program wrote to the file after this session opened or saved it is not written over: the document goes into a new
+        file beside it, and the error names both. A file that this session neither opened nor saved is replaced.
         """
         self._handle.call("rototoon_session_save", *text(os.fsdecode(path)))
 

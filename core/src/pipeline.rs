@@ -38,6 +38,7 @@ mod strokes;
 mod style;
 mod trace;
 mod tween;
+pub mod unchanged;
 mod unseen;
 mod untracked;
 

@@ -158,8 +158,70 @@ def test_cut_short_document(addon, tmp_path):
 
 def test_export_to_a_folder_that_is_not_there(addon, fake, tmp_path):
     shots.two_keys(addon, tmp_path)
-    with pytest.raises(RuntimeError, match="Cannot write"):
+    with pytest.raises(RuntimeError, match="cannot write"):
         bpy.ops.rototoon.export_document(filepath=str(tmp_path / "no/such/out.json"))
+
+
+def changed(path):
+    """Another program renames the first part of a document. Returns what the file holds now."""
+    document = json.loads(path.read_text())
+    document["parts"][0]["name"] += " of somebody else"
+    path.write_text(json.dumps(document))
+    return path.read_bytes()
+
+
+def names(path):
+    return [part["name"] for part in json.loads(path.read_text())["parts"]]
+
+
+def test_export_onto_a_document_that_another_program_changed(addon, library, tmp_path):
+    path, beside = tmp_path / "in.json", tmp_path / "in (2).json"
+    path.write_text(json.dumps(project(tmp_path)))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    theirs = changed(path)
+    with pytest.raises(RuntimeError, match="another program wrote the file meanwhile") as caught:
+        bpy.ops.rototoon.export_document(filepath=str(path))
+    assert str(path) in str(caught.value) and str(beside) in str(caught.value)
+    assert path.read_bytes() == theirs and names(beside) == ["box", "line"]
+    # Of a file that was not read here the artist chose the name.
+    other = tmp_path / "other.json"
+    other.write_text("theirs")
+    assert bpy.ops.rototoon.export_document(filepath=str(other)) == {"FINISHED"}
+    changed(other)
+    with pytest.raises(RuntimeError, match=r"other \(2\)"):
+        bpy.ops.rototoon.export_document(filepath=str(other))
+
+
+def test_the_file_remembers_what_was_imported(addon, library, tmp_path):
+    path = tmp_path / "in.json"
+    path.write_text(json.dumps(project(tmp_path)))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    name = bpy.context.object.name
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    theirs = changed(path)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.context.view_layer.objects.active = bpy.data.objects[name]
+    with pytest.raises(RuntimeError, match="another program wrote the file meanwhile"):
+        bpy.ops.rototoon.export_document(filepath=str(path))
+    assert path.read_bytes() == theirs
+
+
+def test_what_this_blender_wrote_is_not_another_programs(addon, library, tmp_path):
+    """Undo takes back what the object knows of a file, and leaves the file."""
+    path = tmp_path / "in.json"
+    path.write_text(json.dumps(project(tmp_path)))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    ob = bpy.context.object
+    before = ob.rototoon.known_files
+    ob.rototoon.parts[0].name = "case"
+    assert bpy.ops.rototoon.export_document(filepath=str(path)) == {"FINISHED"}
+    assert ob.rototoon.known_files != before
+    ob.rototoon.known_files = before
+    assert bpy.ops.rototoon.export_document(filepath=str(path)) == {"FINISHED"} and names(path) == ["case", "line"]
+    ob.rototoon.known_files = before
+    changed(path)
+    with pytest.raises(RuntimeError, match="another program wrote"):
+        bpy.ops.rototoon.export_document(filepath=str(path))
 
 
 def test_save_move_and_open(addon, fake, tmp_path):

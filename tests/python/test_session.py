@@ -8,7 +8,7 @@ import threading
 
 import pytest
 from conftest import LAST, square
-from rototoon import Cancelled, RototoonError, Session, WeakestFrame, match_contours, outcomes, parameters, version
+from rototoon import Cancelled, RototoonError, Session, WeakestFrame, documents, match_contours, outcomes, parameters, version
 
 FRAMES = list(range(LAST + 1))
 
@@ -267,6 +267,42 @@ def test_files_and_folders(session, document, folder, tmp_path):
     with pytest.raises(RototoonError, match="nothing.json"):
         Session.open(tmp_path / "nothing.json")
     beside.unlink()
+
+
+def test_what_another_program_wrote_meanwhile_is_not_written_over(session, tmp_path):
+    path, beside = tmp_path / "shot.json", tmp_path / "shot (2).json"
+    session.save(path)
+    with Session.open(path) as own, Session.open(path) as other:
+        other.remove_part("red")
+        other.save(path)
+        theirs = path.read_bytes()
+        own.add_part({"name": "dot", "closed": False, "depth": 0, "keys": {"0": [[1, 1]], "2": [[2, 2]]}})
+        with pytest.raises(RototoonError, match="another program wrote the file meanwhile") as caught:
+            own.save(path)
+        assert str(path) in str(caught.value) and str(beside) in str(caught.value)
+        assert path.read_bytes() == theirs
+        with Session.open(beside) as saved:
+            assert saved.parts() == ["red", "blau ü", "dot"]
+        # What a session saved is known to it, and what another one saved is not.
+        other.save(path)
+        own.save(tmp_path / "new.json")
+        own.save(tmp_path / "new.json")
+        other.remove_part("blau ü")
+        other.save(tmp_path / "new.json")
+        with pytest.raises(RototoonError, match=r"new \(2\).json"):
+            own.save(tmp_path / "new.json")
+
+
+def test_callers_with_a_document_of_their_own_keep_marks(tmp_path):
+    path = tmp_path / "é.json"
+    assert documents.mark(path) == ""
+    mark = documents.replace(path, "one")
+    assert mark == documents.mark(os.fsencode(path)) != ""
+    mark = documents.replace(path, "two", mark)
+    path.write_text("theirs")
+    with pytest.raises(RototoonError, match=r"é \(2\).json"):
+        documents.replace(path, "three", mark)
+    assert path.read_text() == "theirs" and (tmp_path / "é (2).json").read_text() == "three"
 
 
 def test_parts_and_footage_can_be_changed(session, document, folder):

@@ -13,7 +13,7 @@ from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
 from ...lines import drawings
 from ...paint import recolours
-from .. import drawn, drawn_out, files, filled, layers_out, without_footage
+from .. import drawn, drawn_out, filled, known_files, layers_out, without_footage
 
 
 class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
@@ -66,7 +66,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         beyond = document.reach(reading.document)
         lines = self._add_lines(context.object, reading.document)
         paint = self._add_paint(context.object, reading.document)
-        files.save(path, reading.document)
+        known_files.save(context.object, path, reading.document)
         if beyond:
             self.warn(f"the footage has no picture for the contours of its pictures {listed(beyond)}: they are written, but render and export end with the footage")
         reshaped = snapping.reshaped(context.object)
@@ -90,7 +90,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         if not found:
             raise Problem(f'No lines on "{ob.rototoon.lines_layer}": choose the layer of your lines in the panel Lines, or all layers')
         without_footage.fit(project)
-        files.save(path, project)
+        known_files.save(ob, path, project)
         return f"{' and '.join(found)} in {os.path.basename(path)}, without footage"
 
     def _without_lines(self, ob) -> str:

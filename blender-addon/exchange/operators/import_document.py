@@ -9,7 +9,7 @@ from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
 from ...common.wording import counted, listed
-from .. import drawn, files, filled, importing
+from .. import drawn, files, filled, importing, known_files
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
@@ -48,6 +48,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         if not self.filepath:
             raise Problem("No file chosen")
         path = bpy.path.abspath(self.filepath)
+        held = known_files.mark(path)
         project = files.load(path)
         drawn.checked(project)
         filled.read(project)
@@ -69,6 +70,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         importing.apply(ob, project)
         lines, paint = drawn.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
+        known_files.note(ob, path, held)
         ob.data.update_tag()
         where = f', in the new object "{ob.name}"' if self.into == "NEW" else ""
         return f"{' and '.join(self._said(ob, lines, paint))} from {os.path.basename(path)}{where}"

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x2096fa3f4efabb22
+HEADER_HASH = 0xf627f42551c17d30
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0
@@ -26,6 +26,14 @@ INTEGERS: dict[str, tuple[tuple[int, str, Any], ...]] = {
         (1, "stroke_count", ctypes.c_size_t),
         (5, "drawing_count", ctypes.c_size_t),
         (8, "options_length", ctypes.c_size_t),
+    ),
+    "rototoon_file_mark": (
+        (1, "path_length", ctypes.c_size_t),
+    ),
+    "rototoon_file_replace": (
+        (1, "path_length", ctypes.c_size_t),
+        (3, "content_length", ctypes.c_size_t),
+        (5, "read_length", ctypes.c_size_t),
     ),
     "rototoon_session_set_fills": (
         (4, "click_count", ctypes.c_size_t),
@@ -194,6 +202,24 @@ def declare(library: ctypes.CDLL) -> None:
         ctypes.c_size_t,
         RototoonProgress,
         ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_file_mark.restype = ctypes.c_int32
+    library.rototoon_file_mark.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_file_replace.restype = ctypes.c_int32
+    library.rototoon_file_replace.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
+        ctypes.c_void_p,
+        ctypes.c_size_t,
         ctypes.c_void_p,
         ctypes.c_void_p,
     ]

@@ -145,6 +145,25 @@ RototoonStatus rototoon_suggest_breakdown(const int32_t *offsets,
                                           struct RototoonText **suggestion,
                                           struct RototoonText **error);
 
+// Returns a mark of what a file holds now, for `rototoon_file_replace`. Take it before you read the file. It is a short text, the same on all machines, and
+// may be kept. It is empty if there is no file, or if it cannot be read.
+RototoonStatus rototoon_file_mark(const uint8_t *path,
+                                  size_t path_length,
+                                  struct RototoonText **mark,
+                                  struct RototoonText **error);
+
+// Writes a text as a file, completely or not at all. `read` is the mark that `rototoon_file_mark` or this function returned before. If another program wrote
+// the file since, it stays as it is: the text goes into a new file beside it, and the call fails with the names of both. With an empty mark the file is
+// replaced, whatever it holds. `mark` is that of the text.
+RototoonStatus rototoon_file_replace(const uint8_t *path,
+                                     size_t path_length,
+                                     const uint8_t *content,
+                                     size_t content_length,
+                                     const uint8_t *read,
+                                     size_t read_length,
+                                     struct RototoonText **mark,
+                                     struct RototoonText **error);
+
 // Replaces the clicks of the painter, `fills` in the document. `frames` has `click_count` frame numbers, in any order.
 // `places` has two numbers for each click, x and y in pixels. `colours` has three, sRGB from 0 to 1, or three NaN for a region that stays without
 // paint.
@@ -368,6 +387,9 @@ RototoonStatus rototoon_session_set_document(const struct RototoonSession *sessi
 
 // Writes the document to a file, completely or not at all. If the file is not in the session's folder, a relative
 // footage pattern is rewritten so that it names the same files.
+//
+// What another program wrote to the file after this session opened or saved it is not written over: the document goes into a new file beside it, and the
+// call fails with the names of both. A file that this session neither opened nor saved is replaced.
 RototoonStatus rototoon_session_save(const struct RototoonSession *session,
                                      const uint8_t *path,
                                      size_t path_length,

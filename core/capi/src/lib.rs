@@ -5,7 +5,7 @@
 //!
 //! The crate has two layers. The outer one is the exported functions: [`session_abi`],
 //! [`session_edit_abi`], [`session_track_abi`], [`session_conform_abi`], [`traced_abi`], [`filled_abi`], [`strokes_abi`], [`tween_abi`],
-//! [`breakdown_abi`], [`style_abi`], [`functions`], [`handles`]. They read their arguments through [`entry`] and report progress through
+//! [`breakdown_abi`], [`style_abi`], [`functions`], [`files_abi`], [`handles`]. They read their arguments through [`entry`] and report progress through
 //! [`callback`]. The inner one is safe Rust: [`session`], [`traced`], [`filled`], [`conformed`], [`edit`], [`options`], [`matching`], [`strokes`],
 //! [`sheet`], [`style`], [`choosing`], [`work`].
 //!
@@ -48,6 +48,7 @@ mod choosing;
 pub mod conformed;
 pub mod edit;
 pub mod entry;
+pub mod files_abi;
 pub mod filled;
 pub mod filled_abi;
 pub mod functions;

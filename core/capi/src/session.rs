@@ -8,6 +8,7 @@ use crate::traced::{Asked, RototoonTraced};
 use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::cache::FileCache;
+use rototoon::pipeline::unchanged::Known;
 use rototoon::pipeline::{self, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
@@ -32,6 +33,7 @@ static TRACED: LazyLock<Mutex<TraceMemory>> = LazyLock::new(Mutex::default);
 pub struct Session {
     document: Document,
     folder: PathBuf,
+    known: Known,
     pictures: Option<Sequence>,
     trackers: BTreeMap<&'static str, Tracker>,
 }
@@ -71,15 +73,17 @@ impl Session {
 
     /// Creates a session from a project file.
     pub fn open(path: &Path) -> Result<Self, Failure> {
+        let mut known = Known::new();
+        known.remember(path);
         let document = Document::load(path).map_err(Failure::error)?;
         let folder = folder_of(path, &document.scene.footage);
-        Ok(Self::of(document, &folder))
+        Ok(Self { known, ..Self::of(document, &folder) })
     }
 
     fn of(document: Document, folder: &Path) -> Self {
         // An absolute folder does not depend on later changes of the working directory.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        Self { document, folder, pictures: None, trackers: BTreeMap::new() }
+        Self { document, folder, known: Known::new(), pictures: None, trackers: BTreeMap::new() }
     }
 
     /// The document as JSON.
@@ -88,14 +92,15 @@ impl Session {
     }
 
     /// Writes the document. If `path` is not in the session's folder, a relative footage pattern is rewritten so that it
-    /// names the same files. A frame of the footage is refused as `path`; the project file may be written over.
-    pub fn save(&self, path: &Path) -> Result<(), Failure> {
+    /// names the same files. A frame of the footage is refused as `path`; the project file may be written over, unless another program wrote it after it was
+    /// opened or saved here.
+    pub fn save(&mut self, path: &Path) -> Result<(), Failure> {
         let inputs = Inputs::default().footage(&self.document.scene.footage, &self.folder);
         inputs.check(path).map_err(Failure::error)?;
         let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
         pipeline::relocate(&mut document, &self.folder, &folder_for(&target, &self.folder));
-        document.save(path).map_err(Failure::error)
+        self.known.save(&document, path).map_err(Failure::error)
     }
 
     /// Replaces the document. Keeps solved spans, and the pictures if the footage is the same.

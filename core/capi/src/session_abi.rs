@@ -134,6 +134,9 @@ pub unsafe extern "C" fn rototoon_session_set_document(
 
 /// Writes the document to a file, completely or not at all. If the file is not in the session's folder, a relative
 /// footage pattern is rewritten so that it names the same files.
+///
+/// What another program wrote to the file after this session opened or saved it is not written over: the document goes into a new file beside it, and the
+/// call fails with the names of both. A file that this session neither opened nor saved is replaced.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_save(
     session: *const RototoonSession,

@@ -1,6 +1,7 @@
 //! Errors and exit statuses.
 
 use rototoon::pipeline::PipelineError;
+use rototoon::pipeline::unchanged::ReplaceError;
 use rototoon::project::{LoadError, OverwritesInput, SaveError, WriteError};
 use rototoon::scene::Cancelled;
 use std::io::Write;
@@ -25,6 +26,9 @@ pub enum Failure {
     /// The document could not be written.
     #[error(transparent)]
     Save(#[from] SaveError),
+    /// The document could not be written over what was read.
+    #[error(transparent)]
+    Replace(#[from] ReplaceError),
     /// A file could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),

@@ -41,11 +41,20 @@ impl Document {
     ///
     /// A [`SaveError`].
     pub fn save(&self, path: &Path) -> Result<(), SaveError> {
+        Ok(write_whole(path, self.to_save(path)?.as_bytes())?)
+    }
+
+    /// The text of the document as [`save`](Self::save) writes it to `path`.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError::Invalid`].
+    pub fn to_save(&self, path: &Path) -> Result<String, SaveError> {
         let problems = validate::problems(&self.scene);
         if problems.error_count() > 0 {
             return Err(SaveError::Invalid { path: path.display().to_string(), problems });
         }
-        Ok(write_whole(path, self.to_json().as_bytes())?)
+        Ok(self.to_json())
     }
 
     /// The text of the document. If the scene is not valid ([`Document::problems`]), the text may be unreadable.
