@@ -171,5 +171,8 @@ class CaptureSettings:
         name="Show Pins", description="Mark the points and centres that you fixed", default=True
     )
     parts: bpy.props.CollectionProperty(type=RototoonPart)
+    exchanges: bpy.props.StringProperty(
+        description="Parts that may have changed places where the last Track followed them: [[number, number, [picture, ...]], ...]"
+    )
     active_part: bpy.props.IntProperty(name="Active Part", default=0)
     next_number: bpy.props.IntProperty(default=1)

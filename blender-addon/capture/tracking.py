@@ -17,7 +17,7 @@ from ..blender import guard, preferences
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.wording import counted, listed
-from . import document, ends, identity, sessions, writing
+from . import document, ends, exchanged, identity, sessions, writing
 
 OUTWARD = "rototoon"
 """The method that tracks a part with one key outward from that key."""
@@ -92,6 +92,7 @@ def finishing(ob, run: Run) -> Iterator[float]:
     identity.write(ob, reading.found, reading.decisions)
     strokes = yield from writing_tracks(ob, reading, run.entry.session)
     note_ends(ob, reading, run.worker.result.ends)
+    exchanged.note(ob, run.worker.result.exchanges)
     run.entry.inputs, run.entry.preset = reading.document, run.preset
     run.entry.closed = reading.found.closed_names
     ob.data.update_tag()

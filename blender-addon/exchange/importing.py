@@ -9,7 +9,7 @@ from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
-from ..capture import contours, corrections, correspondence, document, ends, snapping, writing
+from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, writing
 from . import files
 
 
@@ -52,6 +52,7 @@ def need_open(ob) -> None:
 def _empty(ob) -> None:
     settings = ob.rototoon
     settings.parts.clear()
+    exchanged.put(ob, [])
     for layer in gp.layers(ob, settings.contours_layer) + gp.layers(ob, settings.snapped_layer):
         gp.remove_frames(layer, gp.frame_numbers(layer))
 

@@ -39,7 +39,7 @@ from . import fills, lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .outcomes import outcomes
-from .results import Conformed, End, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
+from .results import Conformed, End, Exchange, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
 from .session import Session
 from .strokes import Guides, Pieces, Strokes, fit_strokes, hidden_lines, match_contours
 
@@ -47,6 +47,7 @@ __all__ = [
     "Cancelled",
     "Conformed",
     "End",
+    "Exchange",
     "Guides",
     "Job",
     "LibraryError",

@@ -8,14 +8,15 @@ from typing import Any
 
 from .native import handles
 from .native.arrays import as_json
-from .results import Outcome, Outcomes, WeakestFrame
+from .results import Exchange, Outcome, Outcomes, WeakestFrame
 
 
-def outcomes(parts: Iterable[Mapping[str, Any]]) -> Outcomes:
+def outcomes(parts: Iterable[Mapping[str, Any]], exchanges: Iterable[Exchange] = ()) -> Outcomes:
     """Which contours of some parts are sure, doubtful and lost, and where the next key helps most.
 
     A part is ``{"keys": [frame, ...], "confidence": {frame: mean, ...}, "wants_key": [frame, ...]}``. The means are those of
     the confidence of its points. `wants_key` are the frames beyond its track on which it was lost; it may be left out.
+    `exchanges` are parts that may have changed places; the answer has words for them.
     """
     asked = [
         {
@@ -25,6 +26,7 @@ def outcomes(parts: Iterable[Mapping[str, Any]]) -> Outcomes:
         }
         for part in parts
     ]
-    found = json.loads(handles.take(handles.Text, "rototoon_outcomes", *as_json({"parts": asked})))
+    pairs = [{"parts": list(pair.parts), "frames": [int(frame) for frame in pair.frames]} for pair in exchanges]
+    found = json.loads(handles.take(handles.Text, "rototoon_outcomes", *as_json({"parts": asked, "exchanges": pairs})))
     weakest = found["weakest"] and WeakestFrame(found["weakest"]["frame"], found["weakest"]["score"])
-    return Outcomes([Outcome(**part) for part in found["parts"]], weakest)
+    return Outcomes([Outcome(**part) for part in found["parts"]], weakest, found["exchanges"])

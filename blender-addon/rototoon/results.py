@@ -38,6 +38,15 @@ class End:
 
 
 @dataclass(frozen=True)
+class Exchange:
+    """Two parts that look alike and may have changed places."""
+
+    parts: tuple[str, str]
+    frames: list[int]
+    """Frames on which nothing says which is which, rising. A key or a pin there does."""
+
+
+@dataclass(frozen=True)
 class Summary:
     """Result of `Session.track`."""
 
@@ -45,6 +54,8 @@ class Summary:
     """One for each part and span: parts in the document's order, spans in time order."""
     ends: list[End]
     """Ends of parts with one key: parts in the document's order, the end before the key first."""
+    exchanges: list[Exchange]
+    """Parts that may have changed places, in the document's order."""
 
     @property
     def solved(self) -> int:
@@ -101,6 +112,8 @@ class Outcomes:
     """In the order of the request."""
     weakest: WeakestFrame | None
     """`None` if nothing was tracked."""
+    exchanges: list[str]
+    """What the command line says of parts that may have changed places, in the order of the request."""
 
 
 @dataclass(frozen=True)

@@ -22,12 +22,13 @@ from .delivered import Moved, conform
 from .keys import set_key
 from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
 from .paint import Painted, Recoloured, Region, fill_drawings, fill_region, recolour, recolours, regions, remove_recolour
-from .reading import End, Part, Track, ends, lost_frames, parts, tracks, wanted_keys, weakest_frame
+from .reading import End, Exchange, Part, Track, ends, exchanges, lost_frames, parts, tracks, wanted_keys, weakest_frame
 from .work import Tracked, track
 
 __all__ = [
     "Drawn",
     "End",
+    "Exchange",
     "Line",
     "Moved",
     "Painted",
@@ -41,6 +42,7 @@ __all__ = [
     "conform",
     "doubtful_lines",
     "ends",
+    "exchanges",
     "fill_drawings",
     "fill_region",
     "lines",

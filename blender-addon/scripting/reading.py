@@ -12,7 +12,7 @@ import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender import guard
-from ..capture import contours, document
+from ..capture import contours, document, exchanged
 from ..capture import ends as track_ends
 from ..capture.doubt import weakest
 from ..common.operators import OnContours
@@ -65,6 +65,16 @@ class End:
     """The first frame beyond the track."""
     reason: str
     """``lost``: the part needs a key there. ``cut``: another shot begins there. ``left``: the part left the picture."""
+
+
+@dataclass(frozen=True)
+class Exchange:
+    """Two parts that look alike and may have changed places."""
+
+    parts: tuple[str, str]
+    """Their names."""
+    frames: tuple[int, ...]
+    """Frames on which nothing says which is which, rising. A key or a pin there does."""
 
 
 @told
@@ -123,6 +133,13 @@ def ends(ob: bpy.types.Object) -> list[End]:
     need(ob, OnContours, guard.NOTHING)
     offset = ob.rototoon.frame_offset
     return [End(item.name, frame + offset, reason) for item in ob.rototoon.parts for frame, reason in track_ends.of(item)]
+
+
+@told
+def exchanges(ob: bpy.types.Object) -> list[Exchange]:
+    """Parts that may have changed places, as the last Track found them."""
+    need(ob, OnContours, guard.NOTHING)
+    return [Exchange(pair.parts, pair.frames) for pair in exchanged.of(ob)]
 
 
 def wanted_keys(ob: bpy.types.Object) -> dict[str, list[int]]:

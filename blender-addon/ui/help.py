@@ -18,6 +18,7 @@ PAGES = (
     ("bpy.ops.rototoon.track*", "artist/panels.html#track"),
     ("bpy.ops.rototoon.*pins*", "artist/corrections.html"),
     ("bpy.ops.rototoon.weakest_frame*", "artist/corrections.html"),
+    ("bpy.ops.rototoon.exchanged_parts*", "artist/corrections.html"),
     ("bpy.ops.rototoon.hide_part*", "artist/corrections.html"),
     ("bpy.ops.rototoon.snap*", "artist/strokes.html"),
     ("bpy.ops.rototoon.fit_strokes*", "artist/strokes.html"),

@@ -5,7 +5,7 @@ Only what an artist needs all the time is open at first.
 
 import bpy
 
-from ..capture import absence, ends, live, stand
+from ..capture import absence, ends, exchanged, live, stand
 from ..common.wording import counted
 from ..paint import recolours
 from ..style import clip_browser, limbs
@@ -13,7 +13,7 @@ from ..tween import spacing_curve
 from .clips import draw_browser
 from .lists import headings
 from .panel import DrawingPanel, Panel, settings_of
-from .start import wrapped
+from .start import lines_of, wrapped
 
 CLOSED = {"DEFAULT_CLOSED"}
 
@@ -114,6 +114,16 @@ def _draw_ends(layout, settings) -> None:
             column.label(text=text, icon=icon)
 
 
+def _draw_exchanged(layout, ob) -> None:
+    """What may have changed places. A click on it goes there."""
+    for number, pair in enumerate(exchanged.of(ob)):
+        column = layout.box().column(align=True)
+        for line, text in enumerate(lines_of(str(pair), 30)):
+            row = column.row()
+            row.alignment = "LEFT"
+            row.operator("rototoon.exchanged_parts", text=text, icon="BLANK1" if line else "QUESTION", emboss=False).pair = number
+
+
 def _is_hidden_here(context, settings) -> bool:
     """Whether the part that is chosen in the list is marked as hidden on the current frame."""
     if settings.active_part >= len(settings.parts):
@@ -148,6 +158,7 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
             text, icon = live.status(context.object)
             layout.label(text=text, icon=icon)
         _draw_ends(layout, settings)
+        _draw_exchanged(layout, context.object)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"

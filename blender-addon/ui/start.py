@@ -116,12 +116,20 @@ class ROTOTOON_PT_start(Panel, bpy.types.Panel):
 
 def wrapped(layout, text: str, width: int = 34) -> None:
     """A text as lines of labels."""
-    column, line = layout.column(align=True), ""
-    for word in [*text.split(), ""]:
-        if not word or (line and len(line) + len(word) >= width):
-            column.label(text=line)
-            line = ""
-        line = f"{line} {word}".strip()
+    column = layout.column(align=True)
+    for line in lines_of(text, width):
+        column.label(text=line)
+
+
+def lines_of(text: str, width: int = 34) -> list[str]:
+    """A text in lines that fit into a sidebar of its usual width, if no word is longer."""
+    lines: list[str] = []
+    for word in text.split():
+        if lines and len(lines[-1]) + len(word) < width:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines
 
 
 CLASSES = (ROTOTOON_PT_start,)

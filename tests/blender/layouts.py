@@ -46,7 +46,9 @@ class Layout:
         assert icon in ICONS, icon
         module, name = idname.split(".")
         known = getattr(getattr(bpy.ops, module), name).get_rna_type().properties
-        return self._settings(idname, known)
+        made = self._settings(idname, known)
+        vars(made)["shown"] = options.get("text", "")
+        return made
 
     def operator_menu_enum(self, idname, name, **options):
         known = getattr(bpy.ops.rototoon, idname.split(".")[1]).get_rna_type().properties

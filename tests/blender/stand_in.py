@@ -15,6 +15,13 @@ class Summary:
     solved: int
     reused: int
     ends: list = field(default_factory=list)
+    exchanges: list = field(default_factory=list)
+
+
+@dataclass
+class Exchange:
+    parts: tuple
+    frames: list
 
 
 @dataclass

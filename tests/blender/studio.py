@@ -172,6 +172,11 @@ def _moved_and_tracked(addon, ob):
     bpy.ops.rototoon.track()
 
 
+def _exchanged(addon, ob):
+    numbers = [part.number for part in ob.rototoon.parts][:2]
+    addon("capture.exchanged").put(ob, [(*numbers, [2, 3])])
+
+
 def _on_generated(addon, ob):
     bpy.context.scene.frame_set(2)
 
@@ -310,6 +315,7 @@ OPERATORS = {
     "depth_mark": Call(options={"front": "Part 1", "behind": "Part 2"}),
     "draw_contours": Call(_C, prepare=_beyond_the_end),
     "drive_bones": Call(on="Rig", options={"content": "plain"}),
+    "exchanged_parts": Call(changes=False, prepare=_exchanged),
     "export_document": Call(changes=False, options={"filepath": "{folder}/out.json"}),
     "fill_drawings": Call(_P, prepare=_clicked),
     "fit_strokes": Call(_I | {SNAPPED}, options={"frames": "ALL"}),

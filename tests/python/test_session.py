@@ -8,7 +8,7 @@ import threading
 
 import pytest
 from conftest import LAST, square
-from rototoon import Cancelled, RototoonError, Session, WeakestFrame, documents, match_contours, outcomes, parameters, version
+from rototoon import Cancelled, Exchange, RototoonError, Session, WeakestFrame, documents, match_contours, outcomes, parameters, version
 
 FRAMES = list(range(LAST + 1))
 
@@ -21,7 +21,7 @@ def test_track_fills_every_frame_and_keeps_keys(session, document):
         ("blau ü", 0, 6),
         ("blau ü", 6, 12),
     ]
-    assert (summary.solved, summary.reused) == (4, 0)
+    assert (summary.solved, summary.reused, summary.exchanges) == (4, 0, [])
     for index, name in enumerate(session.parts()):
         track = session.tracks(name)
         assert (track.frames.format, track.frames.tolist()) == ("i", FRAMES)
@@ -251,6 +251,11 @@ def test_outcomes_are_those_of_the_core():
     assert found.parts[0].sure == [frame for frame in range(1, 19) if frame not in (8, 9, 10)]
     assert found.weakest.frame == 12
     assert outcomes([]).weakest is None
+
+
+def test_parts_that_may_have_changed_places_are_told_as_on_the_command_line():
+    found = outcomes([], [Exchange(("near leg", "far leg"), [7, 3, 2, 4])]).exchanges
+    assert found == ['parts "near leg" and "far leg" look alike and may have changed places on 2-4, 7: a key or a pin there says which is which']
 
 
 def test_files_and_folders(session, document, folder, tmp_path):

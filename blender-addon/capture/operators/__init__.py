@@ -3,6 +3,7 @@
 from . import (
     clear_generated,
     draw_contours,
+    exchanged_parts,
     footage_from_camera,
     footage_from_file,
     footage_from_reference,
@@ -30,6 +31,7 @@ _MODULES = (
     snap,
     show_confidence,
     weakest_frame,
+    exchanged_parts,
     hide_part,
     clear_generated,
 )

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xf627f42551c17d30
+HEADER_HASH = 0xee1edf35dfcc9756
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0

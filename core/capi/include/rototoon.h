@@ -306,12 +306,14 @@ RototoonStatus rototoon_match_contours(const uint8_t *request,
 // Says what became of parts that the caller holds: which frames are sure, doubtful and lost, and where the next key
 // helps most. The command line and the reports use the same formula.
 //
-// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}]}`. The means
-// are those of the confidence of the part's points on that frame. `wants_key` are the frames just beyond a track on
-// which the part was lost. It may be left out.
+// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}], "exchanges":
+// [{"parts": [name, name], "frames": [frame]}]}`. The means are those of the confidence of the part's points on that
+// frame. `wants_key` are the frames just beyond a track on which the part was lost. `exchanges` are parts that may have
+// changed places, as `rototoon_session_track` found them. Both may be left out.
 //
 // `outcomes` is JSON: `{"weakest": {"frame", "score"}, "parts": [{"sure": [frame], "doubtful": [frame], "lost":
-// [frame]}]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+// [frame]}], "exchanges": [text]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+// The texts are what the command line says.
 RototoonStatus rototoon_outcomes(const uint8_t *request,
                                  size_t request_length,
                                  struct RototoonText **outcomes,
@@ -516,13 +518,15 @@ RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session
 // whose track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`.
+// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}]}`.
 //
 // - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 //   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
 // - `ends` has an entry for each end of a single-key part's track that is not an end of the footage. `frame` is the
 //   first frame without a track. `reason` is "lost" (the part needs a key on that frame), "cut" (another shot begins
 //   there) or "left" (the part left the picture).
+// - `exchanges` has an entry for each two parts that look alike and may have changed places, with the frames on which nothing says which is which.
+//   `rototoon_outcomes` has words for it.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,

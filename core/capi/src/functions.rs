@@ -113,12 +113,14 @@ pub unsafe extern "C" fn rototoon_match_contours(
 /// Says what became of parts that the caller holds: which frames are sure, doubtful and lost, and where the next key
 /// helps most. The command line and the reports use the same formula.
 ///
-/// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}]}`. The means
-/// are those of the confidence of the part's points on that frame. `wants_key` are the frames just beyond a track on
-/// which the part was lost. It may be left out.
+/// `request` is JSON: `{"parts": [{"keys": [frame], "confidence": {"frame": mean}, "wants_key": [frame]}], "exchanges":
+/// [{"parts": [name, name], "frames": [frame]}]}`. The means are those of the confidence of the part's points on that
+/// frame. `wants_key` are the frames just beyond a track on which the part was lost. `exchanges` are parts that may have
+/// changed places, as `rototoon_session_track` found them. Both may be left out.
 ///
 /// `outcomes` is JSON: `{"weakest": {"frame", "score"}, "parts": [{"sure": [frame], "doubtful": [frame], "lost":
-/// [frame]}]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+/// [frame]}], "exchanges": [text]}`, in the order of the request. `weakest` is as of `rototoon_session_weakest_frame`.
+/// The texts are what the command line says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_outcomes(
     request: *const u8,

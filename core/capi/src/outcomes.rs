@@ -4,15 +4,25 @@
 //! command line and the reports.
 
 use crate::status::Failure;
+use rototoon::pipeline::Together;
 use rototoon::scene::{FrameNumber, Outcome, Part};
 use rototoon::track::weakest_frame;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Request {
     parts: Vec<Asked>,
+    #[serde(default)]
+    exchanges: Vec<AskedPair>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AskedPair {
+    parts: [String; 2],
+    frames: BTreeSet<FrameNumber>,
 }
 
 #[derive(Deserialize)]
@@ -28,6 +38,7 @@ struct Asked {
 struct Answer {
     weakest: Option<Weakest>,
     parts: Vec<Found>,
+    exchanges: Vec<String>,
 }
 
 #[derive(Serialize)]
@@ -65,8 +76,14 @@ pub fn answer(request: &str) -> Result<String, Failure> {
         Found { sure, doubtful, lost }
     };
     let weakest = weakest_frame(&parts).map(|w| Weakest { frame: w.frame, score: w.score });
-    let answer = Answer { weakest, parts: parts.iter().map(found).collect() };
+    let exchanges = request.exchanges.into_iter().map(told).collect();
+    let answer = Answer { weakest, parts: parts.iter().map(found).collect(), exchanges };
     serde_json::to_string(&answer).map_err(|error| Failure::Error(error.to_string()))
+}
+
+/// What the command line says of two parts that may have changed places.
+fn told(pair: AskedPair) -> String {
+    Together { parts: pair.parts, frames: pair.frames.into_iter().collect() }.exchanged()
 }
 
 #[cfg(test)]
@@ -84,7 +101,15 @@ mod tests {
         let found = asked(json!({"parts": [{"keys": [0, 6], "confidence": confidence, "wants_key": [9]}]}));
         assert_eq!(found["weakest"]["frame"], 9);
         assert_eq!(found["parts"], json!([{"sure": [1, 2, 4, 5], "doubtful": [], "lost": [3, 9]}]));
-        assert_eq!(asked(json!({"parts": []})), json!({"weakest": null, "parts": []}));
+        assert_eq!(asked(json!({"parts": []})), json!({"weakest": null, "parts": [], "exchanges": []}));
+    }
+
+    #[test]
+    fn parts_that_may_have_changed_places_are_told_as_on_the_command_line() {
+        let found =
+            asked(json!({"parts": [], "exchanges": [{"parts": ["near leg", "far leg"], "frames": [7, 3, 2, 4]}]}));
+        let told = "parts \"near leg\" and \"far leg\" look alike and may have changed places on 2-4, 7: a key or a pin there says which is which";
+        assert_eq!(found["exchanges"], json!([told]));
     }
 
     #[test]

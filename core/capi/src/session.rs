@@ -43,6 +43,13 @@ pub struct Session {
 struct Summary<'a> {
     jobs: Vec<JobSummary<'a>>,
     ends: Vec<EndSummary<'a>>,
+    exchanges: Vec<ExchangeSummary<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct ExchangeSummary<'a> {
+    parts: [&'a str; 2],
+    frames: &'a [FrameNumber],
 }
 
 #[derive(Debug, Serialize)]
@@ -376,7 +383,11 @@ fn summary(scene: &Scene, tracking: &Tracking) -> String {
         let end = |end: &TrackEnd| EndSummary { part: &part.name, frame: end.frame, reason: end.reason.id() };
         track.ends.iter().map(end)
     });
-    json!(Summary { jobs: jobs.collect(), ends: ends.collect() }).to_string()
+    let exchanges = tracking.exchanges.iter().map(|found| ExchangeSummary {
+        parts: found.parts.map(|part| scene.parts[part].name.as_str()),
+        frames: &found.frames,
+    });
+    json!(Summary { jobs: jobs.collect(), ends: ends.collect(), exchanges: exchanges.collect() }).to_string()
 }
 
 fn termination_id(termination: Termination) -> &'static str {
@@ -387,5 +398,26 @@ fn termination_id(termination: Termination) -> &'static str {
         Termination::NoDescent => "no_descent",
         Termination::IterationLimit => "iteration_limit",
         Termination::PathChosen => "path_chosen",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rototoon::track::Exchange;
+
+    #[test]
+    fn the_summary_names_parts_that_may_have_changed_places() {
+        let part = |name: &str| Part { name: name.into(), ..Part::default() };
+        let document = Document::parse(
+            r#"{"rototoon": 1, "footage": {"pattern": "%d.png", "first": 0, "last": 9, "fps": 25, "width": 64, "height": 48}, "parts": []}"#,
+            ORIGIN,
+        );
+        let mut scene = document.unwrap().scene;
+        scene.parts = ["near leg", "head", "far leg"].map(part).into();
+        let tracking =
+            Tracking { exchanges: vec![Exchange { parts: [0, 2], frames: vec![3, 4, 7] }], ..Tracking::default() };
+        let summary: Value = serde_json::from_str(&summary(&scene, &tracking)).unwrap();
+        assert_eq!(summary["exchanges"], json!([{"parts": ["near leg", "far leg"], "frames": [3, 4, 7]}]));
     }
 }

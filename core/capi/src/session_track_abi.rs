@@ -20,13 +20,15 @@ use std::ptr::null_mut;
 /// whose track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-/// "final_cost"}], "ends": [{"part", "frame", "reason"}]}`.
+/// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}]}`.
 ///
 /// - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 ///   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
 /// - `ends` has an entry for each end of a single-key part's track that is not an end of the footage. `frame` is the
 ///   first frame without a track. `reason` is "lost" (the part needs a key on that frame), "cut" (another shot begins
 ///   there) or "left" (the part left the picture).
+/// - `exchanges` has an entry for each two parts that look alike and may have changed places, with the frames on which nothing says which is which.
+///   `rototoon_outcomes` has words for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,

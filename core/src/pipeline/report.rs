@@ -146,7 +146,8 @@ impl Together {
         format!("parts {a:?} and {b:?} lie on one place on {}: a key of one of them parts them", runs(&self.frames))
     }
 
-    fn exchanged(&self) -> String {
+    /// The line for a person about parts that may have changed places. The frames rise.
+    pub fn exchanged(&self) -> String {
         let ([a, b], frames) = (&self.parts, runs(&self.frames));
         format!(
             "parts {a:?} and {b:?} look alike and may have changed places on {frames}: a key or a pin there says which is which"
