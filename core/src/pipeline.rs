@@ -65,7 +65,8 @@ pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, 
 pub use seen::changed;
 pub use shapeless::nothing_for;
 pub use shapes::{Imported, ShapeFormat, import_shifted};
-pub use sheet::sheet;
+pub use sheet::{Sheet, sheet};
+pub use sheet_marks::no_picture;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
 pub use trace::{TraceMemory, TraceOptions, trace, trace_drawings};
 pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};

@@ -14,7 +14,8 @@ pub fn command() -> Command {
     Command::new("sheet")
         .about(
             "Draws a contact sheet: the frames with their contours, strokes and paint, those with something lost in red borders, \
-             those with something doubtful in amber ones. Of more than 48 frames it shows the worst ones and some between",
+             those with something doubtful in amber ones. A frame whose picture cannot be read is hatched, and one without a file that \
+             holds an earlier one says which. Of more than 48 frames it shows the worst ones and some between",
         )
         .arg(arguments::project())
         .arg(arguments::output("SHEET", "The picture to write, such as sheet.png"))
@@ -34,12 +35,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let sheet = progress::run(given, from, |bar| {
         pipeline::sheet(&document, &home, bar).map_err(|error| Failure::of(error, from))
     })?;
-    let bytes = encode::colours(&sheet, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
+    let bytes = encode::colours(&sheet.picture, Format::Png).map_err(|error| Failure::Other(error.to_string()))?;
     write_whole(to, &bytes)?;
     let changed = pipeline::changed(&document, &home, &Made::ALL, None).map_err(|error| Failure::of(error, from))?;
     for warning in pipeline::outdated(&document.scene).iter().chain(&pipeline::outside(&document.scene)).chain(&changed)
     {
         line("warning", &format!("{}: {warning}", from.display()));
     }
-    Ok(())
+    // As `render` does: what can be drawn is drawn, and the status says that something is missing.
+    sheet.gaps.map_or(Ok(()), |gaps| Err(Failure::of(gaps, from)))
 }

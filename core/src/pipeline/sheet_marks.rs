@@ -1,4 +1,4 @@
-//! Marks on a contact sheet: colours, the number of a frame, and those of the strokes to look at.
+//! Marks on a contact sheet: colours, the number of a frame, those of the strokes to look at, and what stands for a picture that cannot be read.
 //!
 //! `trace` names doubtful and lost strokes by their numbers, which no picture shows otherwise. So each of them has its number beside the middle of its line,
 //! in the colour of the verdict. Where numbers would cover each other, lost strokes come first, and what finds no place is left out.
@@ -11,6 +11,12 @@ pub(super) const PLAIN: Colour = [0.16, 0.16, 0.17];
 /// Colours of what is lost and of what is doubtful.
 pub(super) const LOST: Colour = [0.9, 0.1, 0.1];
 pub(super) const DOUBTFUL: Colour = [0.95, 0.65, 0.1];
+/// Colours of the stripes of a picture that cannot be read, their width in pixels of the small picture, and the colour of the words in it.
+const STRIPES: [Colour; 2] = [[0.3; 3], [0.42; 3]];
+const STRIPE: f64 = 10.0;
+const WORDS: Colour = [0.95; 3];
+/// Greatest side of a dot of these words in pixels.
+const LARGE: usize = 3;
 /// Side of a dot of a stroke's number in pixels.
 const SMALL: usize = 2;
 /// Dots around a stroke's number, and rows and columns of a digit.
@@ -27,7 +33,42 @@ pub(super) fn put(whole: &mut Raster<Colour>, picture: &Raster<Colour>, (left, t
     }
 }
 
-/// The digits and the minus sign in dots, five rows of three.
+/// A picture of this size with slanted stripes, in place of one that cannot be read. `zoom` is how many times smaller it will be shown.
+pub(super) fn hatched(width: usize, height: usize, zoom: f64) -> Raster<Colour> {
+    let mut picture = Raster::new(width, height, STRIPES[0]);
+    for y in 0..height {
+        for (x, colour) in picture.row_mut(y).iter_mut().enumerate() {
+            *colour = STRIPES[((x + y) as f64 / (STRIPE * zoom)) as usize % 2];
+        }
+    }
+    picture
+}
+
+/// What stands for a small picture of this size that cannot be read.
+pub fn no_picture(width: usize, height: usize) -> Raster<Colour> {
+    let mut small = hatched(width, height, 1.0);
+    say_no_picture(&mut small);
+    small
+}
+
+/// Writes onto a small picture that there is none.
+pub(super) fn say_no_picture(small: &mut Raster<Colour>) {
+    say(small, "NO PICTURE", LARGE);
+}
+
+/// Writes words into the middle of a small picture, in the largest dots up to a size for which there is room.
+fn say(small: &mut Raster<Colour>, words: &str, size: usize) {
+    let (width, height) = (small.width(), small.height());
+    let box_of = |size: usize| [length(words, size) + 2 * AROUND * size, (ROWS + 2 * AROUND) * size];
+    let fits = |size: &usize| box_of(*size)[0] <= width && box_of(*size)[1] <= height;
+    let Some(size) = (1..=size).rev().find(fits) else { return };
+    let [wide, high] = box_of(size);
+    let (left, top) = ((width - wide) / 2, (height - high) / 2);
+    put(small, &Raster::new(wide, high, PLAIN), (left, top));
+    write(small, words, (left + AROUND * size, top + AROUND * size), size, WORDS);
+}
+
+/// The digits, the letters that the sheet needs, and the minus sign in dots, five rows of three.
 fn dots(sign: char) -> [u8; ROWS] {
     match sign {
         '0' => [0b111, 0b101, 0b101, 0b101, 0b111],
@@ -40,20 +81,39 @@ fn dots(sign: char) -> [u8; ROWS] {
         '7' => [0b111, 0b001, 0b010, 0b010, 0b010],
         '8' => [0b111, 0b101, 0b111, 0b101, 0b111],
         '9' => [0b111, 0b101, 0b111, 0b001, 0b111],
+        'C' => [0b011, 0b100, 0b100, 0b100, 0b011],
+        'D' => [0b110, 0b101, 0b101, 0b101, 0b110],
+        'E' => [0b111, 0b100, 0b110, 0b100, 0b111],
+        'H' => [0b101, 0b101, 0b111, 0b101, 0b101],
+        'I' => [0b111, 0b010, 0b010, 0b010, 0b111],
+        'L' => [0b100, 0b100, 0b100, 0b100, 0b111],
+        'N' => [0b110, 0b101, 0b101, 0b101, 0b101],
+        'O' => [0b010, 0b101, 0b101, 0b101, 0b010],
+        'P' => [0b110, 0b101, 0b110, 0b100, 0b100],
+        'R' => [0b110, 0b101, 0b110, 0b101, 0b101],
+        'S' => [0b011, 0b100, 0b010, 0b001, 0b110],
+        'T' => [0b111, 0b010, 0b010, 0b010, 0b010],
+        'U' => [0b101, 0b101, 0b101, 0b101, 0b111],
+        ' ' => [0; ROWS],
         _ => [0, 0, 0b111, 0, 0],
     }
 }
 
-/// Writes a number in dots of a size, from its top left corner.
+/// The width of a text in dots of a size.
+pub(super) fn length(text: &str, size: usize) -> usize {
+    ((COLUMNS + 1) * text.chars().count()).saturating_sub(1) * size
+}
+
+/// Writes a number or words of [`dots`] in dots of a size, from the top left corner.
 pub(super) fn write(
     picture: &mut Raster<Colour>,
-    number: &str,
+    text: &str,
     (left, top): (usize, usize),
     size: usize,
     colour: Colour,
 ) {
     let dot = Raster::new(size, size, colour);
-    for (i, sign) in number.chars().enumerate() {
+    for (i, sign) in text.chars().enumerate() {
         for (row, bits) in dots(sign).into_iter().enumerate() {
             for column in (0..COLUMNS).filter(|column| bits & (0b100 >> column) != 0) {
                 put(picture, &dot, (left + ((COLUMNS + 1) * i + column) * size, top + row * size));
@@ -77,7 +137,7 @@ pub(super) fn write_strokes(small: &mut Raster<Colour>, scene: &Scene, frame: Fr
     named.sort_by_key(|own| own.0);
     let mut taken: Vec<[usize; 4]> = Vec::new();
     for (Reverse(verdict), number, at) in named {
-        let size = [((COLUMNS + 1) * number.len() - 1 + 2 * AROUND) * SMALL, (ROWS + 2 * AROUND) * SMALL];
+        let size = [length(number, SMALL) + 2 * AROUND * SMALL, (ROWS + 2 * AROUND) * SMALL];
         if size[0] > small.width() || size[1] > small.height() {
             continue;
         }

@@ -11,7 +11,7 @@ use rototoon::image::resize::resize;
 use rototoon::project::{Document, WriteError, write_whole};
 use rototoon::render::{OverlayOptions, overlay};
 use rototoon::scene::{Colour, FrameNumber, FrameSource, Raster};
-use rototoon::{memory, pictures};
+use rototoon::{memory, pictures, pipeline};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ const BYTES: u64 = 70;
 /// Width of the contours in pixels of the small picture.
 const LINE: f64 = 1.6;
 
-/// Writes the pictures of a document in `folder` to the folder of a shot. Frames that cannot be read have none.
+/// Writes the pictures of a document in `folder` to the folder of a shot. Those of frames that cannot be read are hatched.
 ///
 /// # Errors
 ///
@@ -95,12 +95,14 @@ fn chosen(first: FrameNumber, last: FrameNumber, findings: &Findings) -> Vec<Fra
 }
 
 fn picture(document: &Document, frames: &pictures::Sequence, frame: FrameNumber) -> Option<Vec<u8>> {
-    let below = frames.picture(frame).ok()?;
-    let (width, height) = (below.width(), below.height());
+    let (width, height) = (document.scene.footage.width, document.scene.footage.height);
     let scale = (SIZE as f64 / width.max(height) as f64).min(1.0);
+    let small = |length: usize| ((length as f64 * scale).round() as usize).max(1);
+    let Ok(below) = frames.picture(frame) else {
+        return jpeg(&pipeline::no_picture(small(width), small(height)));
+    };
     let options = OverlayOptions { line_width: LINE / scale, points: false, confidence: true };
     let drawn = overlay(&document.scene, frame, &below, None, &options);
-    let small = |length: usize| ((length as f64 * scale).round() as usize).max(1);
     jpeg(&resize(&drawn, small(width), small(height)))
 }
 
@@ -128,6 +130,24 @@ mod tests {
         assert!([0, 33, 71, 99].iter().all(|frame| frames.contains(frame)) && !frames.contains(&999), "{frames:?}");
         assert_eq!(chosen(5, 5, &Findings::default()), [5]);
         assert_eq!(chosen(i32::MIN, i32::MAX, &Findings::default()).len(), PICTURES);
+    }
+
+    #[test]
+    fn a_frame_that_cannot_be_read_is_hatched() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        image::RgbImage::from_pixel(160, 90, image::Rgb([255; 3])).save(at("f_0.png")).unwrap();
+        fs::create_dir(at("shot")).unwrap();
+        let text = r#"{"rototoon": 1, "footage": {"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 25, "width": 160, "height": 90}, "parts": []}"#;
+        let document = Document::parse(text, "p").unwrap();
+        write(&document, folder.path(), &Findings::default(), &at("shot"), 1).unwrap();
+        let pictures = read(&at("shot"));
+        let greys = pictures.iter().map(|(_, path)| image::open(path).unwrap().to_luma8());
+        let [whole, hatched] = &greys.collect::<Vec<_>>()[..] else { panic!("{pictures:?}") };
+        assert_eq!((whole.dimensions(), hatched.dimensions()), ((160, 90), (160, 90)));
+        let light = |picture: &image::GrayImage| picture.pixels().filter(|pixel| pixel.0[0] > 200).count();
+        assert_eq!(light(whole), 160 * 90);
+        assert!((200..160 * 9).contains(&light(hatched)), "words on stripes: {}", light(hatched));
     }
 
     #[test]

@@ -100,7 +100,7 @@ fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
     fs::remove_file(cartoon.frame(1)).unwrap();
     fs::remove_file(cartoon.frame(2)).unwrap();
     fs::write(cartoon.frame(4), "no picture").unwrap();
-    let [out, sheet, painted] = ["out.json", "sheet.png", "painted.json"].map(|name| cartoon.path(name));
+    let [out, painted] = ["out.json", "painted.json"].map(|name| cartoon.path(name));
     let mut clicked = read(&document);
     clicked["fills"] = json!([{"frame": 0, "regions": [{"at": [20, 20], "colour": [1, 0, 0]}]}]);
     fs::write(&painted, clicked.to_string()).unwrap();
@@ -109,7 +109,6 @@ fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
         ["snap", text(&document), "-o", text(&out)],
         ["trace", text(&document), "-o", text(&out)],
         ["fill", text(&painted), "-o", text(&out)],
-        ["sheet", text(&document), "-o", text(&sheet)],
     ] {
         let said = bad(&words, 1);
         let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("error: ")).collect();
@@ -117,7 +116,7 @@ fn a_gap_in_a_sequence_ends_work_at_once_and_all_gaps_are_named() {
         assert!(lines[0].contains("frame 1: no file") && lines[0].ends_with("(the same on frame 2)"), "{said}");
         assert!(lines[1].contains("frame 4: cannot read") && lines[1].contains("not a PNG"), "{said}");
     }
-    assert!(!out.exists() && !sheet.exists());
+    assert!(!out.exists());
     // Frames that are not needed may be missing.
     good(&["trace", text(&document), "-o", text(&out), "--frames", "5-6"]);
 }
@@ -140,6 +139,51 @@ fn pictures_are_drawn_around_a_gap_and_the_missing_ones_are_named() {
     // A matte is drawn from contours alone.
     let to = cartoon.path("m.%d.exr");
     good(&["render", text(&document), "-o", text(&to), "--what", "matte"]);
+}
+
+#[test]
+fn a_sheet_marks_frames_without_a_picture_of_their_own() {
+    let cartoon = Cartoon::new();
+    let document = tracked(&cartoon);
+    let sheet = cartoon.path("sheet.png");
+    const WIDE: u32 = 74;
+    let cells = || {
+        let sheet = image::open(&sheet).unwrap().to_rgb8();
+        // A cell has a border of 5 px and a strip of 21 px, and 4 px between itself and the next one. Six are in a row.
+        let (width, height) = ((sheet.width() - 4) / 6, (sheet.height() - 4) / 2);
+        let at = |frame: u32| (4 + frame % 6 * width, 4 + frame / 6 * height);
+        // Cells are as wide as the widest one, so the narrowest is compared.
+        let cell = |(x, y): (u32, u32)| image::imageops::crop_imm(&sheet, x, y, WIDE, height - 4).to_image();
+        (0..7).map(|frame| cell(at(frame)).into_raw()).collect::<Vec<_>>()
+    };
+    good(&["sheet", text(&document), "-o", text(&sheet)]);
+    let whole = cells();
+    fs::remove_file(cartoon.frame(2)).unwrap();
+    let changed = |now: &[Vec<u8>]| (0..7).filter(|&frame| now[frame] != whole[frame]).collect::<Vec<_>>();
+    // The document says that gaps are held.
+    let held = cartoon.path("held.json");
+    let mut json = read(&document);
+    json["footage"]["gaps"] = json!("held");
+    fs::write(&held, json.to_string()).unwrap();
+    good(&["sheet", text(&held), "-o", text(&sheet)]);
+    let holding = cells();
+    assert_eq!(changed(&holding), [2]);
+    fs::copy(cartoon.frame(1), cartoon.frame(2)).unwrap();
+    good(&["sheet", text(&held), "-o", text(&sheet)]);
+    assert_ne!(cells()[2], holding[2], "the same picture in a file of its own is not held");
+    // A file that is missing, and one that is cut off.
+    fs::remove_file(cartoon.frame(2)).unwrap();
+    let bytes = fs::read(cartoon.frame(5)).unwrap();
+    fs::write(cartoon.frame(5), &bytes[..bytes.len() / 2]).unwrap();
+    let said = bad(&["sheet", text(&document), "-o", text(&sheet)], 1);
+    assert!(said.contains("frame 2: no file") && said.contains("frame 5: cannot read"), "{said}");
+    assert!(said.contains("5 of 7 frames were drawn; those named are missing"), "{said}");
+    assert_eq!(changed(&cells()), [2, 5]);
+    // A sheet without any picture is none.
+    (0..7).filter(|frame| *frame != 2).for_each(|frame| fs::remove_file(cartoon.frame(frame)).unwrap());
+    fs::remove_file(&sheet).unwrap();
+    let said = bad(&["sheet", text(&document), "-o", text(&sheet)], 1);
+    assert!(said.contains("none of 7 frames was drawn") && !sheet.exists(), "{said}");
 }
 
 #[test]
