@@ -143,8 +143,11 @@ def test_corrections_absences_and_further_fields_go_along(addon, film, delivered
     part = film.rototoon.parts[0]
     part.extra = json.dumps({"absent": [[2, 2], [7, 7]], "note": "kept"})
     film.rototoon.extra = json.dumps({"depth_marks": [{"front": "Part 1", "behind": "Part 2", "first": 8, "last": 9}], "studio": 1})
+    exchanged = addon("capture.exchanged")
+    exchanged.put(film, [(1, 2, [2, 7]), (1, 2, [7])])
     bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert json.loads(part.extra) == {"absent": [[1004, 1004]], "note": "kept"}
+    assert exchanged.rows_of(film) == [(1, 2, [1004])], "the drawing of picture 7 is gone"
     extra = json.loads(film.rototoon.extra)
     assert extra["studio"] == 1 and extra["depth_marks"][0] == {"front": "Part 1", "behind": "Part 2", "first": 1009, "last": 1010}
     after = {part["name"]: part.get("pins") for part in document.read(film).document["parts"]}
