@@ -134,6 +134,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     if let Some(extension) = foreign(&path) {
         return import(effect, &path, &extension);
     }
+    instance(effect)?.known().remember(&path);
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
     let folder = folder(&path);
     let pattern = &mut document.scene.footage.pattern;
@@ -170,7 +171,10 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     Ok(())
 }
 
-/// Writes the composition's shapes to the project's file. Footage below the file's folder gets a relative path.
+/// Writes the composition's shapes to the project's file, but not over what another program wrote there since this instance read or saved it. Footage below
+/// the file's folder gets a relative path.
+///
+/// Limit: a composition that was opened again does not know what the file held before.
 fn save(effect: &Effect) -> Result<(), Failure> {
     let path = chosen(effect)?;
     if foreign(&path).is_some() {
@@ -193,7 +197,7 @@ fn save(effect: &Effect) -> Result<(), Failure> {
     {
         *pattern = slashed(relative);
     }
-    document.save(&path).map_err(|error| told(&error))
+    instance(effect)?.known().save(&document, &path).map_err(|error| told(&error))
 }
 
 fn folder(path: &Path) -> PathBuf {

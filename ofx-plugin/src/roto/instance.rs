@@ -7,6 +7,7 @@ use super::stale::Stale;
 use super::state::State;
 use super::stored;
 use crate::ofx::{Effect, Failure, Parameters};
+use rototoon::pipeline::unchanged::Known;
 use rototoon::project::Document;
 use rototoon::scene::Part;
 use std::collections::BTreeSet;
@@ -37,6 +38,7 @@ pub struct Instance {
     stale: Mutex<Stale>,
     tracking: AtomicBool,
     menu: Mutex<Vec<String>>,
+    known: Mutex<Known>,
 }
 
 /// A document, or why it could not be read.
@@ -71,6 +73,9 @@ impl Instance {
         };
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
+            if let Origin::File(path, _) = &origin {
+                self.known().remember(Path::new(path));
+            }
             let result = shared::document(&origin, || match &origin {
                 Origin::Text(text) => stored::decode(text)
                     .map_err(|error| format!("{ORIGIN}: {error}"))
@@ -118,6 +123,11 @@ impl Instance {
             (text, state)
         }));
         state.clone().map_err(Failure::Told)
+    }
+
+    /// What project files held when this instance read or saved them.
+    pub fn known(&self) -> MutexGuard<'_, Known> {
+        lock(&self.known)
     }
 
     /// The selection and the pen's unfinished work.

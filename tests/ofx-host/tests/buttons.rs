@@ -202,6 +202,22 @@ fn load_and_save() {
     std::fs::remove_file(&file).unwrap();
     assert_eq!(effect.press("save"), OK);
     assert_eq!(Document::load(&file).unwrap().scene, crate::common::scene());
+    assert_eq!(effect.press("save"), OK, "what was saved here is known");
+    // Another program writes the file meanwhile.
+    let theirs = document().replace("\"parts\"", "\"note\": \"theirs\", \"parts\"");
+    assert_ne!(theirs, document());
+    std::fs::write(&file, &theirs).unwrap();
+    assert_eq!(effect.press("save"), "kOfxStatFailed");
+    let beside = folder.path().join("project (2).json");
+    let said = host.messages().pop().unwrap_or_default();
+    assert!(
+        said.contains("another program wrote the file meanwhile") && said.contains(beside.to_str().unwrap()),
+        "{said}"
+    );
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), theirs);
+    assert_eq!(Document::load(&beside).unwrap().scene, crate::common::scene());
+    // After Load the file is known as it is now.
+    assert_eq!((effect.press("load"), effect.press("save")), (OK.into(), OK.into()));
     effect.set_text_silently("project", folder.path().join("none/a.json").to_str().unwrap());
     assert_eq!((effect.press("save"), effect.press("load")), ("kOfxStatFailed".into(), "kOfxStatFailed".into()));
     assert_eq!(host.messages().len(), 2);
