@@ -142,7 +142,9 @@ def test_all_files_of_a_folder(addon, sent, tmp_path):
 
 def test_results_are_taken(addon, sent, tmp_path):
     before = places(addon, sent, 5)
+    addon("capture.exchanged").put(sent, [(1, 2, [4])])
     assert collect(tmp_path) == {"FINISHED"}
+    assert not sent.rototoon.exchanges, "what the last Track found was in other contours"
     assert "14 contours taken into 1 object" in last_report(addon).text
     for number, points in places(addon, sent, 5).items():
         assert np.allclose(points, before[number] + (2.0, 0.0), atol=0.01)
