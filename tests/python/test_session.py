@@ -7,7 +7,7 @@ import os
 import threading
 
 import pytest
-from conftest import LAST, square
+from conftest import LAST, square, write_png
 from rototoon import Cancelled, Exchange, RototoonError, Session, WeakestFrame, documents, match_contours, outcomes, parameters, version
 
 FRAMES = list(range(LAST + 1))
@@ -251,6 +251,31 @@ def test_outcomes_are_those_of_the_core():
     assert found.parts[0].sure == [frame for frame in range(1, 19) if frame not in (8, 9, 10)]
     assert found.weakest.frame == 12
     assert outcomes([]).weakest is None
+
+
+def test_parts_that_may_have_changed_places_are_named(tmp_path):
+    """Two boxes of one look meet on the way there and on the way back, and only the ends are keyed."""
+    last, size = 12, (160, 90)
+    places = {"near leg": [(12 + 20 * min(f, last - f), 24) for f in range(last + 1)], "far leg": [(56 + 2 * f, 34) for f in range(last + 1)]}
+    for frame in range(last + 1):
+        pixels = [[(255, 255, 255)] * size[0] for _ in range(size[1])]
+        for left, top in (places["far leg"][frame], places["near leg"][frame]):
+            for y in range(top, top + 31):
+                for x in range(left, left + 23):
+                    pixels[y][x] = (200, 60, 60) if 0 < x - left < 22 and 0 < y - top < 30 else (0, 0, 0)
+        write_png(tmp_path / f"f_{frame}.png", pixels)
+
+    def box(x, y):
+        return [[x, y], [x + 22, y], [x + 22, y + 30], [x, y + 30]]
+
+    parts = [
+        {"name": name, "closed": True, "depth": -depth, "keys": {str(frame): box(*at[frame]) for frame in (0, last)}}
+        for depth, (name, at) in enumerate(places.items())
+    ]
+    footage = {"pattern": "f_%d.png", "first": 0, "last": last, "fps": 24, "width": size[0], "height": size[1]}
+    with Session.from_document({"rototoon": 1, "footage": footage, "parts": parts}, tmp_path) as session:
+        (found,) = session.track().exchanges
+    assert found.parts == ("near leg", "far leg") and set(range(3, 9)) <= set(found.frames)
 
 
 def test_parts_that_may_have_changed_places_are_told_as_on_the_command_line():
