@@ -115,15 +115,51 @@ struct Subject {
     asked: Asked,
 }
 
+/// Looks at a window of a film before [`unite`] does, and remembers what it found. Of a film of which the store keeps only a part, each part would go through all frames, and
+/// find none of them kept. All parts look at one window of frames together.
+///
+/// # Errors
+///
+/// As for [`unite`].
+pub(super) fn look_at(
+    window: Span,
+    kit: Kit,
+    (scene, tracking): (&Scene, &Tracking),
+    memory: &mut Memory,
+) -> Result<(), TrackError> {
+    let view = View::new(kit, scene, tracking, memory);
+    let parts = closed(scene);
+    let of_part = |&part: &usize| {
+        let mut of = Subject { part, asked: Asked::new() };
+        let tracks = &tracking.parts[part].tracks;
+        for before in (window.first..window.last).filter(|f| tracks.contains_key(f) && tracks.contains_key(&(f + 1))) {
+            view.shift(&mut of, before, before + 1)?;
+        }
+        Ok(of.asked)
+    };
+    let asked: Vec<Result<Asked, TrackError>> = parts.par_iter().with_max_len(1).map(of_part).collect();
+    let asked = asked.into_iter().collect::<Result<Vec<Asked>, TrackError>>()?;
+    let pans = std::mem::take(&mut *view.pans());
+    memory.pans.extend(pans);
+    for (p, asked) in parts.into_iter().zip(asked) {
+        memory.asked.entry(scene.parts[p].name.clone()).or_default().extend(asked);
+    }
+    Ok(())
+}
+
+/// The parts whose contours enclose something.
+fn closed(scene: &Scene) -> Vec<usize> {
+    (0..scene.parts.len()).filter(|&p| scene.parts[p].closed).collect()
+}
+
 /// Gives each closed part of a tracked scene one contour on the frames that show one drawing of it.
 ///
 /// # Errors
 ///
 /// The error of a picture that cannot be read, or the cancellation by the listener of `kit`.
 pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking, memory: &Memory) -> Result<Memory, TrackError> {
-    let scale = working_scale(scene.footage.height);
-    let view = View { kit, scene, tracking, scale, memory, pans: Mutex::default() };
-    let parts: Vec<usize> = (0..scene.parts.len()).filter(|&p| scene.parts[p].closed).collect();
+    let view = View::new(kit, scene, tracking, memory);
+    let parts = closed(scene);
     let taken: Vec<Result<(Taken, Asked), TrackError>> =
         parts.par_iter().with_max_len(1).map(|&part| view.taken(Subject { part, asked: Asked::new() })).collect();
     let taken = taken.into_iter().collect::<Result<Vec<(Taken, Asked)>, TrackError>>()?;
@@ -139,7 +175,11 @@ pub(super) fn unite(kit: Kit, scene: &Scene, tracking: &mut Tracking, memory: &M
     Ok(found)
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(kit: Kit<'a>, scene: &'a Scene, tracking: &'a Tracking, memory: &'a Memory) -> Self {
+        Self { kit, scene, tracking, scale: working_scale(scene.footage.height), memory, pans: Mutex::default() }
+    }
+
     /// The contours that frames of a part take from others, and what was asked for them.
     fn taken(&self, mut of: Subject) -> Result<(Taken, Asked), TrackError> {
         let (part, track) = (&self.scene.parts[of.part], &self.tracking.parts[of.part]);

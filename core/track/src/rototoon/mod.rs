@@ -128,6 +128,8 @@ pub struct Rototoon {
     stretches: Option<Stretches>,
     /// Drawings of the spans that came from it.
     from_cache: cached::Drawings,
+    /// The frames of the last run in windows of which the store keeps all, if it does not keep all of the film.
+    windows: Vec<Span>,
     /// In tests: of how many frames the store keeps what was computed.
     pub(crate) room: Option<usize>,
 }
@@ -169,7 +171,7 @@ impl SceneSolver for Rototoon {
         let stretches = self.stretches.take();
         let unknown = stretches.as_ref().map(|stretches| self.recall(stretches));
         if self.mechanisms.has(Mechanism::Holds) {
-            self.holds = holds::unite(self.kit(&looks, progress), scene, &mut tracking, &self.holds)?;
+            self.unite(&looks, scene, &mut tracking, progress)?;
         }
         if self.mechanisms.has(Mechanism::Exchanges) {
             exchange::doubt(self.kit(&looks, progress), scene, &mut tracking)?;
@@ -250,6 +252,24 @@ impl Rototoon {
         }
         self.keep_only(film);
         Ok(film.assembled(tasks, done, finer))
+    }
+
+    /// Gives parts that are held one contour, and remembers what it found, also after an error.
+    fn unite(
+        &mut self,
+        looks: &Looks,
+        scene: &Scene,
+        tracking: &mut Tracking,
+        progress: &dyn Progress,
+    ) -> Result<(), TrackError> {
+        let mut memory = std::mem::take(&mut self.holds);
+        let kit = self.kit(looks, progress);
+        let mut windows = self.windows.iter();
+        let looked = windows.try_for_each(|&window| holds::look_at(window, kit, (scene, tracking), &mut memory));
+        let found = looked.and_then(|()| holds::unite(kit, scene, tracking, &memory));
+        let (memory, result) = found.map_or_else(|error| (memory, Err(error)), |memory| (memory, Ok(())));
+        self.holds = memory;
+        result
     }
 
     /// The drawings of a span, found in this run or an earlier one, or kept in the cache.

@@ -124,7 +124,7 @@ impl Rototoon {
     }
 
     /// Some stretches in groups, each with as many frames as the store has room for, or of one stretch.
-    fn batches(&self, run: &mut Run, stretches: &[usize]) -> Result<Vec<Vec<usize>>, TrackError> {
+    fn batches(&mut self, run: &mut Run, stretches: &[usize]) -> Result<Vec<Vec<usize>>, TrackError> {
         let ranges: Vec<Span> = stretches.iter().map(|&s| range(run.tasks, &run.stretches[s])).collect();
         let Some(first) = ranges.first() else { return Ok(Vec::new()) };
         let reading = run.shared.reading(&[]);
@@ -143,7 +143,13 @@ impl Rototoon {
                 _ => batches.push((range.len(), vec![s])),
             }
         }
-        Ok(batches.into_iter().map(|(_, batch)| batch).collect())
+        let batches: Vec<Vec<usize>> = batches.into_iter().map(|(_, batch)| batch).collect();
+        let window = |batch: &Vec<usize>| {
+            let tasks: Vec<usize> = batch.iter().flat_map(|&s| run.stretches[s].iter().copied()).collect();
+            range(run.tasks, &tasks)
+        };
+        self.windows = if run.is_long { batches.iter().map(window).collect() } else { Vec::new() };
+        Ok(batches)
     }
 
     /// Reads the pictures of some stretches, and makes the pools of their members.
