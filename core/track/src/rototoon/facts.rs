@@ -7,7 +7,7 @@
 
 use super::Rototoon;
 use super::cached::{Stretch, Stretches};
-use super::holds::{Answer, Pan};
+use super::holds::{Pan, Said};
 use rototoon_base::scene::FrameNumber;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub(super) type Pair = (FrameNumber, FrameNumber);
 struct Facts {
     /// Whether two frames show the same drawing.
     same: Vec<(Pair, bool)>,
-    asked: Vec<(String, Pair, Vec<Answer>)>,
+    asked: Vec<Said>,
     pans: Vec<(FrameNumber, Pan)>,
 }
 

@@ -59,6 +59,9 @@ pub(super) struct Memory {
 /// By the frame of a contour and the one that it was compared with: the answers for each shift.
 type Asked = BTreeMap<Pair, Vec<Answer>>;
 
+/// The answers for the contours of a part, by its name and the frames.
+pub(super) type Said = (String, Pair, Vec<Answer>);
+
 /// What was asked for a contour.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Answer {
@@ -79,7 +82,7 @@ impl Memory {
     }
 
     /// What was found between the frames of a span: answers by name and pair of frames, and pans by frame.
-    pub fn within(&self, span: Span) -> (Vec<(String, Pair, Vec<Answer>)>, Vec<(FrameNumber, Pan)>) {
+    pub fn within(&self, span: Span) -> (Vec<Said>, Vec<(FrameNumber, Pan)>) {
         let is_in = |frame: FrameNumber| span.first <= frame && frame <= span.last;
         let of_part = |(name, asked): (&String, &Asked)| {
             let own = asked.iter().filter(|((a, b), _)| is_in(*a) && is_in(*b));
@@ -90,7 +93,7 @@ impl Memory {
     }
 
     /// Adds what was found in the same pictures.
-    pub fn add(&mut self, asked: Vec<(String, Pair, Vec<Answer>)>, pans: Vec<(FrameNumber, Pan)>) {
+    pub fn add(&mut self, asked: Vec<Said>, pans: Vec<(FrameNumber, Pan)>) {
         for (name, pair, answers) in asked {
             self.asked.entry(name).or_default().entry(pair).or_default().extend(answers);
         }
