@@ -14,6 +14,7 @@ use crate::layout::Layout;
 use crate::leaks::{leaks, swallowed};
 use crate::lost;
 use crate::meet::{Table, meeting};
+use crate::opens::Opens;
 use crate::page::{Page, Paint};
 use crate::relax::relax;
 use crate::said::Said;
@@ -118,7 +119,8 @@ fn both(from: &Page, to: &Page) -> Option<Both> {
 fn said<'a>(source: &Source<'a>, page: &Page, shifts: &Both) -> Said<'a> {
     let (from, to) = (&source.page.layout, &page.layout);
     let meeting = meeting(from, to, &shifts.ahead, &shifts.back);
-    let relaxed = relax(from, to, &meeting, &source.paint.colours);
+    let opens = Opens::new(from, source.paint, to, &shifts.back);
+    let relaxed = relax(from, to, &meeting, &source.paint.colours, opens.as_ref());
     let colours = relaxed.all.iter().map(|row| weighted(row, &source.paint.colours)).collect();
     let bare = |sure: &f64| if source.own { (1.0 - sure) as f32 } else { 0.0 };
     let bare: Vec<f32> = source.paint.confidence.iter().map(bare).collect();

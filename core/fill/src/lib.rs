@@ -15,6 +15,7 @@
 //! - [`outside`]: clicks that leak to the edge of the picture
 //! - [`piece`]: what a gap parts from a region, and whether it has leaked
 //! - [`meet`]: how well each region of one drawing meets each of another one
+//! - [`opens`]: paper that opens between limbs
 //! - [`relax`]: who is who, by neighbours
 //! - [`page`]: a drawing, and clicks that paint it
 //! - [`carry`](mod@carry): colours and numbers on the next drawing
@@ -76,6 +77,7 @@ pub mod leaks;
 mod levels;
 pub mod lost;
 pub mod meet;
+pub mod opens;
 pub mod outlines;
 pub mod outside;
 pub mod page;

@@ -62,19 +62,22 @@ pub fn meeting(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Tab
 
 /// a b + 0.001 a of each pair.
 fn covered(from: &Layout, to: &Layout, ahead: &Shifts, back: &Shifts) -> Table {
-    let (rows, columns) = (to.figures.len(), from.figures.len());
-    let mut came = vec![vec![0.0f32; columns]; rows];
-    count(to, from, back, |j, i| came[j][i] += 1.0);
-    let mut went = vec![vec![0.0f32; rows]; columns];
-    count(from, to, ahead, |i, j| went[i][j] += 1.0);
-    for row in came.iter_mut().chain(&mut went) {
-        let total = row.iter().sum::<f32>().max(1.0);
-        row.iter_mut().for_each(|value| *value /= total);
-    }
+    let (mut came, went) = (came(from, to, back), came(to, from, ahead));
     for (j, row) in came.iter_mut().enumerate() {
         for (i, a) in row.iter_mut().enumerate() {
             *a = *a * went[i][j] + ALONE * *a;
         }
+    }
+    came
+}
+
+/// The share of each region of `to` that comes from each of `from`.
+pub(crate) fn came(from: &Layout, to: &Layout, back: &Shifts) -> Table {
+    let mut came = vec![vec![0.0f32; from.figures.len()]; to.figures.len()];
+    count(to, from, back, |j, i| came[j][i] += 1.0);
+    for row in &mut came {
+        let total = row.iter().sum::<f32>().max(1.0);
+        row.iter_mut().for_each(|value| *value /= total);
     }
     came
 }

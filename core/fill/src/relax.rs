@@ -6,7 +6,8 @@
 //!
 //! u' = u exp(6 (agreement by regions + agreement by colours)),   M = u' ∕ Σ u'
 //!
-//! is repeated five times (relaxation labelling; Rosenfeld, Hummel & Zucker 1976). The edge of the picture is a neighbour too.
+//! is repeated five times (relaxation labelling; Rosenfeld, Hummel & Zucker 1976). The edge of the picture is a neighbour too. A region may also be a piece of the
+//! [paper](crate::opens).
 //!
 //! # Competition
 //!
@@ -18,7 +19,11 @@
 
 use crate::layout::Layout;
 use crate::meet::Table;
-use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
+use crate::opens::Opens;
+use rayon::prelude::{
+    IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, IntoParallelRefMutIterator,
+    ParallelIterator,
+};
 
 /// Strength of both agreements.
 const STRENGTH: f32 = 6.0;
@@ -37,8 +42,9 @@ pub struct Relaxed {
     pub sure: Table,
 }
 
-/// Relaxes how the regions of `to` meet those of `from`, whose colours are given by probabilities: a row for each region.
-pub fn relax(from: &Layout, to: &Layout, meeting: &Table, colours: &Table) -> Relaxed {
+/// Relaxes how the regions of `to` meet those of `from`, whose colours are given by probabilities: a row for each region. Regions may be pieces of
+/// the paper if that is given.
+pub fn relax(from: &Layout, to: &Layout, meeting: &Table, colours: &Table, opens: Option<&Opens>) -> Relaxed {
     let seen: Table = from.borders.par_iter().map(|own| of_colours(own, colours)).collect();
     let mut all = meeting.clone();
     let mut sure = normalised(&all);
@@ -53,27 +59,37 @@ pub fn relax(from: &Layout, to: &Layout, meeting: &Table, colours: &Table) -> Re
                 let edge = from.borders[i].first().filter(|own| own.0 == 0).map_or(0.0, |own| own.1.min(around[0]));
                 regions + colours + edge
             };
-            let row = &meeting[j];
-            row.iter().enumerate().map(|(i, u)| if *u > 0.0 { u * (STRENGTH * agree(i)).exp() } else { 0.0 }).collect()
+            let raised = |(i, u): (usize, &f32)| if *u > 0.0 { u * (STRENGTH * agree(i)).exp() } else { 0.0 };
+            let mut row: Vec<f32> = meeting[j].iter().enumerate().map(raised).collect();
+            if let Some(opens) = opens {
+                // By regions and by colours.
+                let piece = opens.met[j] * (STRENGTH * 2.0 * opens.agreement(&around)).exp();
+                row[opens.paper] = row[opens.paper].max(piece);
+            }
+            row
         });
         all = relaxed.collect();
         sure = normalised(&all);
         for _ in 0..TURNS {
-            compete(&mut all, &sure);
+            compete(&mut all, &sure, opens);
             sure = normalised(&all);
         }
     }
     Relaxed { all, sure }
 }
 
-/// Lowers the pairs with each region of the source that too many regions want to be.
-fn compete(all: &mut Table, sure: &Table) {
+/// Lowers the pairs with each region of the source that too many regions want to be. Any number may be pieces of the paper.
+fn compete(all: &mut Table, sure: &Table, opens: Option<&Opens>) {
     let mut wanted = vec![0.0f32; sure.first().map_or(0, Vec::len)];
     for row in sure.iter().skip(1) {
         wanted.iter_mut().zip(row).for_each(|(sum, sure)| *sum += sure);
     }
     let less: Vec<f32> = wanted.iter().map(|sum| ROOM / sum.max(ROOM)).collect();
-    all.par_iter_mut().for_each(|row| row.iter_mut().zip(&less).for_each(|(u, less)| *u *= less));
+    all.par_iter_mut().enumerate().for_each(|(j, row)| {
+        let piece = opens.filter(|opens| opens.met[j] > 0.0).map(|opens| (opens.paper, row[opens.paper]));
+        row.iter_mut().zip(&less).for_each(|(u, less)| *u *= less);
+        piece.into_iter().for_each(|(paper, u)| row[paper] = u);
+    });
 }
 
 fn normalised(table: &Table) -> Table {
@@ -140,16 +156,22 @@ mod tests {
         let before = sure(&all);
         for _ in 0..TURNS {
             let now = sure(&all);
-            compete(&mut all, &now);
+            compete(&mut all, &now, None);
         }
         let after = sure(&all);
         assert!(before[2][1] > 0.5 && after[2][1] < 0.4, "{after:?}");
         assert!(after[1][1] > 0.7, "the likest one keeps it: {after:?}");
         assert_eq!(after[3][1], 1.0, "what is like nothing else keeps it too");
+        // Any number of regions may be pieces of the paper.
+        let paper = all.clone();
+        let opens = Opens { paper: 1, met: vec![0.0, 0.1, 0.1, 0.0], beside: vec![0.0; 4] };
+        compete(&mut all, &after, Some(&opens));
+        assert_eq!(all[1][1], paper[1][1]);
+        assert!(all[3][1] < paper[3][1], "what can be no piece of it competes for it");
         // A region that one alone wants is left as it is.
         let mut alone = vec![vec![0.0; 3], vec![0.0, 0.5, 0.1]];
         let now = vec![vec![0.0; 3], vec![0.0, 0.7, 0.1]];
-        compete(&mut alone, &now);
+        compete(&mut alone, &now, None);
         assert_eq!(alone[1], [0.0, 0.5, 0.1]);
     }
 
@@ -175,7 +197,7 @@ mod tests {
             }
         }
         let colours = vec![vec![0.0; 0]; 5];
-        let relaxed = relax(&before, &after, &meeting, &colours);
+        let relaxed = relax(&before, &after, &meeting, &colours, None);
         for k in 0..4 {
             assert!(relaxed.sure[b[k]][a[k]] > 0.75, "{k}: {:?}", relaxed.sure[b[k]]);
         }

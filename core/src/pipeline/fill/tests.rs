@@ -1,3 +1,6 @@
+mod leaks;
+mod mending;
+mod opens;
 mod recolours;
 mod vanished;
 
@@ -181,87 +184,6 @@ fn a_region_that_falls_to_pieces_keeps_its_colour_on_all_of_them() {
 }
 
 #[test]
-fn a_click_on_a_later_frame_mends_it_and_what_follows() {
-    let later = [click((60.0 + 6.0 * 3.0, 75.0), RED)];
-    let mut film = Film::new(5, moving).clicked(&[(0, &own_clicks()), (3, &later)]);
-    film.fill().unwrap();
-    let disc = |frame: FrameNumber| film.at(frame, (60.0 + 6.0 * f64::from(frame), 75.0)).unwrap();
-    assert_eq!([0, 1, 2, 3, 4, 5].map(|frame| disc(frame).colour), [BLUE, BLUE, BLUE, RED, RED, RED]);
-    assert_eq!(disc(3).confidence, 1.0);
-    assert_ne!(disc(2).track, disc(3).track, "a number has one colour");
-    // What was not clicked there was carried there.
-    assert_eq!(film.at(3, (60.0 + 18.0 - 35.0, 75.0)).unwrap().colour, RED);
-    assert_eq!(film.at(5, (3.0, 3.0)).unwrap().colour, PAPER);
-}
-
-#[test]
-fn a_click_that_leaks_into_the_paper_does_not_flood_it() {
-    // A box with a disc in it. From frame 2 on a cuff hangs below it whose outline is open on one side.
-    let ink = |frame: FrameNumber, p: Point| {
-        let cuff = boxed(p, (60.0 + 6.0 * f64::from(frame), 133.0), (11.0, 11.0));
-        let open = p.x > 66.0 + 6.0 * f64::from(frame) && (p.y - 133.0).abs() < 2.5;
-        if frame < 2 || open { moving(frame, p) } else { moving(frame, p).min(cuff) }
-    };
-    let clicks = [click((25.0, 75.0), RED), click((60.0, 75.0), BLUE)];
-    let green = [0.0, 1.0, 0.0];
-    let mut film = Film::new(5, ink).clicked(&[(0, &clicks), (2, &[click((72.0, 133.0), green)])]);
-    film.fill().unwrap();
-    for frame in 2..=5 {
-        let x = 60.0 + 6.0 * f64::from(frame);
-        assert_eq!(film.at(frame, (x, 133.0)).map(|own| own.colour), Some(green), "frame {frame}");
-        assert_eq!(film.at(frame, (190.0, 10.0)), None, "frame {frame}: the paper stays without paint");
-        assert_eq!(film.at(frame, (x - 30.0, 75.0)).map(|own| own.colour), Some(RED), "frame {frame}");
-    }
-}
-
-/// The moving box with a gap of a width in its right side, on frame 0 alone or on all.
-fn open_box(width: f64, always: bool) -> impl Fn(FrameNumber, Point) -> f64 {
-    move |frame, p| {
-        let x = 60.0 + 6.0 * f64::from(frame);
-        let open = p.x > x + 40.0 && (p.y - 95.0).abs() < 0.5 * width && (always || frame == 0);
-        if open { ring(p, (x, 75.0), 18.0) } else { moving(frame, p) }
-    }
-}
-
-#[test]
-fn a_gap_on_the_model_drawing_does_not_flood_the_paper() {
-    for always in [false, true] {
-        let [_, red, blue] = own_clicks();
-        let mut film = Film::new(4, open_box(3.0, always)).clicked(&[(0, &[red, blue])]);
-        let report = film.fill().unwrap();
-        for frame in 0..=4 {
-            let x = 60.0 + 6.0 * f64::from(frame);
-            assert_eq!(film.at(frame, (190.0, 10.0)), None, "frame {frame}: the paper stays without paint");
-            let found = film.at(frame, (x - 35.0, 75.0)).unwrap();
-            assert!(found.colour == RED && found.confidence > 0.5, "frame {frame}: {found:?}");
-        }
-        let [leak] = report.leaking.as_slice() else { panic!("{report:?}") };
-        assert!(leak.gap.closes && leak.place.click == 0, "{leak:?}");
-        let told = "frame 0: the click at (25, 75) was parted from what is around at a gap of about";
-        assert!(report.lines().iter().any(|line| line.starts_with(told)), "{:?}", report.lines());
-    }
-}
-
-#[test]
-fn a_click_that_leaks_through_a_wide_gap_is_named_and_in_doubt() {
-    // Four pixels of this film are more than ten of 540 lines.
-    let [_, red, blue] = own_clicks();
-    let mut film = Film::new(1, open_box(9.0, true)).clicked(&[(0, &[red, blue])]);
-    let report = film.fill().unwrap();
-    let told = "frame 0: the click at (25, 75) paints 200 × 150 px up to the picture's edge, through a gap of about";
-    assert!(report.lines().iter().any(|line| line.starts_with(told)), "{:?}", report.lines());
-    for frame in 0..=1 {
-        let all = film.at(frame, (190.0, 10.0)).unwrap();
-        assert!(all.colour == RED && all.confidence < DOUBT, "frame {frame}: {all:?}");
-    }
-    assert!(report.frames.iter().all(|frame| frame.doubtful > 0), "{report:?}");
-    // Whoever paints the paper, too, means it.
-    let all = own_clicks();
-    let mut film = Film::new(1, open_box(9.0, true)).clicked(&[(0, &all)]);
-    assert!(film.fill().unwrap().leaking.is_empty());
-}
-
-#[test]
 fn two_names_of_one_look_stay_two_colours() {
     let named = |click: FillClick, name: &str| FillClick { name: Some(name.into()), ..click };
     let [_, coat, hair] = own_clicks();
@@ -309,36 +231,6 @@ fn what_was_hidden_when_a_colour_changed_comes_back_in_the_new_one() {
     let mut film = film.clicked(&[(0, &all), (2, &[click((178.0, 30.0), RED)])]);
     film.fill().unwrap();
     assert_eq!(colours(&film, 120.0)[4..], [BLUE; 3]);
-}
-
-#[test]
-fn corrections_hold_to_the_end_of_the_film() {
-    let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
-    let (disc, rest) = ([click((x(2), 75.0), RED)], [click((x(5) - 35.0, 75.0), BLUE)]);
-    let mut film = Film::new(14, moving).clicked(&[(0, &own_clicks()), (2, &disc), (5, &rest)]);
-    film.fill().unwrap();
-    for frame in 0..=14 {
-        let colours = [0.0, -35.0].map(|beside| film.at(frame, (x(frame) + beside, 75.0)).unwrap().colour);
-        let wanted = [if frame < 2 { BLUE } else { RED }, if frame < 5 { RED } else { BLUE }];
-        assert_eq!(colours, wanted, "frame {frame}");
-        assert_eq!(film.at(frame, (3.0, 3.0)).unwrap().colour, PAPER, "frame {frame}");
-    }
-}
-
-#[test]
-fn a_click_before_the_model_drawing_mends_it_and_what_comes_before() {
-    let x = |frame: FrameNumber| 60.0 + 6.0 * f64::from(frame);
-    let model = [click((5.0, 5.0), PAPER), click((x(4) - 35.0, 75.0), RED), click((x(4), 75.0), BLUE)];
-    let mut film = Film::new(5, moving).clicked(&[(2, &[click((x(2), 75.0), RED)]), (4, &model)]);
-    let report = film.fill().unwrap();
-    assert!(report.frames.iter().all(|frame| frame.regions == 3), "one click is no model drawing: {report:?}");
-    let disc = |frame: FrameNumber| film.at(frame, (x(frame), 75.0)).unwrap();
-    assert_eq!([0, 1, 2, 3, 4, 5].map(|frame| disc(frame).colour), [RED, RED, RED, BLUE, BLUE, BLUE]);
-    assert_eq!((disc(2).confidence, disc(4).track), (1.0, 2), "the numbers of the model drawing begin with 0");
-    for frame in 0..=5 {
-        assert_eq!(film.at(frame, (x(frame) - 35.0, 75.0)).unwrap().colour, RED, "frame {frame}");
-        assert_eq!(film.at(frame, (3.0, 3.0)).unwrap().colour, PAPER, "frame {frame}");
-    }
 }
 
 #[test]
