@@ -101,14 +101,11 @@ impl Sequence {
     pub fn mark_of(&self, frame: FrameNumber, picture: &Raster<Colour>) -> Mark {
         let shown = self.shown(frame);
         let known = self.locked().marks.get(&shown).copied();
-        known.map_or_else(
-            || {
-                let mark = mark(picture);
-                self.locked().marks.insert(shown, (self.stamp(frame), mark));
-                mark
-            },
-            |(_, mark)| mark,
-        )
+        known.unwrap_or_else(|| {
+            let mark = mark(picture);
+            self.locked().marks.insert(shown, mark);
+            mark
+        })
     }
 
     /// What changes when the file of a frame does; `None` if nobody knows.
@@ -232,13 +229,15 @@ pub fn mark(picture: &Raster<Colour>) -> Mark {
 }
 
 impl FrameSource for Sequence {
-    /// `None` if the file has changed since its picture was marked: some may still have the old picture.
+    /// `None` if the file has changed since its picture was read for the first time: some may still have the old picture.
     fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
         let known = self.locked().marks.get(&self.shown(frame)).copied();
-        match known {
-            Some((stamp, mark)) => Ok((stamp == self.stamp(frame)).then_some(mark)),
-            None => Ok(Some(self.mark_of(frame, &*self.picture(frame)?))),
-        }
+        let mark = match known {
+            Some(mark) => mark,
+            None => self.mark_of(frame, &*self.picture(frame)?),
+        };
+        let read = self.locked().stamps.get(&self.shown(frame)).copied();
+        Ok((read == Some(self.stamp(frame))).then_some(mark))
     }
 
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
@@ -247,6 +246,9 @@ impl FrameSource for Sequence {
         if let Some(picture) = self.locked().get(shown) {
             return Ok(picture);
         }
+        // What others have computed may be of the picture that was read first.
+        let stamp = self.stamp(frame);
+        self.locked().stamps.entry(shown).or_insert(stamp);
         let (stored, size) = self.stored(frame, size_of::<Colour>())?;
         let colours = stored.colours(self.backdrop(frame, &stored));
         let picture = raster(size, colours).map_err(|error| self.named(frame, self.path(frame), error))?;
@@ -264,8 +266,10 @@ type Stamp = Option<(u64, SystemTime)>;
 struct Kept {
     /// Each picture with the time of its last use.
     pictures: BTreeMap<FrameNumber, (Arc<Raster<Colour>>, u64)>,
-    /// The marks of the pictures that were asked for theirs, and what their files were then.
-    marks: BTreeMap<FrameNumber, (Stamp, Mark)>,
+    /// What the files were before they were read for the first time.
+    stamps: BTreeMap<FrameNumber, Stamp>,
+    /// The marks of the pictures that were asked for theirs.
+    marks: BTreeMap<FrameNumber, Mark>,
     bytes: usize,
     most: usize,
     time: u64,
@@ -350,6 +354,10 @@ mod tests {
         assert_eq!(mark(1), None);
         sequence.forget();
         assert_eq!((mark(1), mark(2).is_some()), (mark(3), true));
+        // So may one that was read before anybody asked for its mark.
+        sequence.picture(6).unwrap();
+        std::fs::write(path(6), "another file").unwrap();
+        assert_eq!(mark(6), None);
         let held = Sequence::new(&Footage { held: true, ..footage }, folder.path()).unwrap();
         std::fs::remove_file(path(5)).unwrap();
         assert_eq!(held.mark(5).unwrap(), held.mark(4).unwrap(), "a frame without a file shows the one before");
