@@ -95,6 +95,9 @@ impl FileCache {
 impl Cache for FileCache {
     fn get(&self, mark: &[u8; 32]) -> Option<Vec<u8>> {
         let path = self.path(mark);
+        // A link may lead to anything, and no entry is longer than all may be.
+        let is_entry = |found: &fs::Metadata| found.is_file() && found.len() <= self.most;
+        fs::symlink_metadata(&path).ok().filter(is_entry)?;
         let bytes = crate::file::bytes(&path).ok()?;
         let (hash, value) = bytes.split_at_checked(HASH)?;
         if blake3::hash(value).as_bytes() != hash {
@@ -108,12 +111,17 @@ impl Cache for FileCache {
     fn put(&self, mark: &[u8; 32], bytes: &[u8]) {
         let path = self.path(mark);
         let Some(group) = path.parent() else { return };
+        // A link would be followed, and a pipe would wait for a reader for ever.
+        if fs::symlink_metadata(&path).is_ok_and(|found| !found.is_file()) {
+            return;
+        }
+        // A folder that holds something else is not only ours: backups are to take it.
+        let is_ours = fs::read_dir(&self.folder).map_or(true, |mut found| found.next().is_none());
         if fs::create_dir_all(group).is_err() {
             return;
         }
-        let tag = self.folder.join(TAG.0);
-        if !tag.exists() {
-            let _ = write_whole(&tag, TAG.1.as_bytes());
+        if is_ours {
+            let _ = write_whole(&self.folder.join(TAG.0), TAG.1.as_bytes());
         }
         let _ = write_whole(&path, &[blake3::hash(bytes).as_bytes(), bytes].concat());
     }
@@ -187,6 +195,30 @@ mod tests {
         assert_eq!(cache.get(&[1; 32]), None);
         cache.trim();
         assert!(file.is_file());
+    }
+
+    #[test]
+    fn a_folder_of_the_user_stays_in_backups() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("shot.json"), "work").unwrap();
+        let cache = FileCache::new(folder.path());
+        cache.put(&[1; 32], b"tracks");
+        assert_eq!(cache.get(&[1; 32]).unwrap(), b"tracks");
+        assert!(!folder.path().join(TAG.0).exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_in_place_of_entries_are_not_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (cache, other) = (FileCache::new(&folder.path().join("cache")), folder.path().join("shot.json"));
+        fs::write(&other, [&blake3::hash(b"x").as_bytes()[..], b"x"].concat()).unwrap();
+        let path = cache.path(&[1; 32]);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::os::unix::fs::symlink(&other, &path).unwrap();
+        assert_eq!(cache.get(&[1; 32]), None);
+        cache.put(&[1; 32], b"tracks");
+        assert_eq!(fs::read(&other).unwrap().last(), Some(&b'x'));
     }
 
     #[test]
