@@ -40,7 +40,7 @@ pub(super) type Drawings = BTreeMap<(String, Span), Vec<Drawing>>;
 pub(super) struct Cached {
     cache: Arc<dyn Cache>,
     marks: Vec<Mark>,
-    /// The marks of the pictures alone.
+    /// The marks of the pictures alone, as the tracker looks at them.
     pictures: Vec<Mark>,
     shown: BTreeMap<FrameNumber, Mark>,
 }
@@ -48,6 +48,7 @@ pub(super) struct Cached {
 /// The stretches of a run that is done.
 pub(super) struct Stretches {
     cache: Arc<dyn Cache>,
+    shown: BTreeMap<FrameNumber, Mark>,
     pub of: Vec<Stretch>,
 }
 
@@ -106,7 +107,7 @@ impl Rototoon {
         let of_run = (TRACKER, format!("{:?} {:?}", self.mechanisms, frames.kind));
         let of_stretch = |(stretch, range): (&Vec<usize>, &Span)| {
             let shown: Option<Vec<&Mark>> = range.frames().map(|frame| pictures.get(&frame)).collect();
-            let shown = mark_of(&(TRACKER, footage, range, shown?))?;
+            let shown = mark_of(&(&of_run, footage, range, shown?))?;
             let spans = |part: usize| stretch.iter().map(|&t| tasks[t]).filter(move |t| t.part == part).map(|t| t.span);
             let inputs = |scene: &'_ Scene| {
                 let parts = scene.parts.iter().enumerate();
@@ -114,7 +115,7 @@ impl Rototoon {
                 mark_of(&inputs.filter(Input::says_something).collect::<Vec<_>>())
             };
             let inputs = [scene].into_iter().chain(forms).map(inputs).collect::<Option<Vec<Mark>>>()?;
-            Some((mark_of(&(&of_run, shown, inputs))?, shown))
+            Some((mark_of(&(shown, inputs))?, shown))
         };
         let marks = stretches.iter().zip(&ranges).map(of_stretch).collect::<Option<Vec<(Mark, Mark)>>>();
         let (marks, of_pictures) = marks.into_iter().flatten().unzip();
@@ -135,6 +136,12 @@ fn marks(
     Vec::from_iter(numbers).par_iter().with_max_len(1).map(mark).collect()
 }
 
+/// Whether the pictures of a range have these marks.
+fn still_shows(shown: &BTreeMap<FrameNumber, Mark>, range: Span, frames: &Looks) -> bool {
+    let is_same = |(frame, mark): (&FrameNumber, &Mark)| frames.frames.mark(*frame).ok().flatten() == Some(*mark);
+    shown.range(range.first..=range.last).all(is_same)
+}
+
 impl Cached {
     /// Where the members of a stretch would go alone.
     pub fn alone(&self, stretch: usize) -> Option<Vec<Member>> {
@@ -143,8 +150,7 @@ impl Cached {
 
     /// Whether the pictures of a range are those that they were when the run began.
     pub fn still_shows(&self, range: Span, frames: &Looks) -> bool {
-        let is_same = |(frame, mark): (&FrameNumber, &Mark)| frames.frames.mark(*frame).ok().flatten() == Some(*mark);
-        self.shown.range(range.first..=range.last).all(is_same)
+        still_shows(&self.shown, range, frames)
     }
 
     /// Keeps where the members of a stretch would go alone.
@@ -153,9 +159,14 @@ impl Cached {
     }
 
     /// The tracks of a stretch in a film with this wobble.
-    pub fn tracks(&self, stretch: usize, wobble: &Wobble, (tasks, members): (&[Task], &[usize])) -> Option<Entry> {
+    pub fn tracks(
+        &self,
+        stretch: usize,
+        wobble: &Wobble,
+        (scene, tasks, members): (&Scene, &[Task], &[usize]),
+    ) -> Option<Entry> {
         let entry: Entry = self.get(stretch, &wobble.of_film())?;
-        entry.fits(tasks, members).then_some(entry)
+        entry.fits(scene, tasks, members).then_some(entry)
     }
 
     /// Keeps the tracks of a stretch in a film with this wobble.
@@ -166,7 +177,7 @@ impl Cached {
     /// The stretches with these frames, and whether each has new tracks.
     pub fn done(self, ranges: impl Iterator<Item = (Span, bool)>) -> Stretches {
         let of = ranges.zip(self.pictures).map(|((range, is_new), pictures)| Stretch { range, is_new, pictures });
-        Stretches { cache: self.cache, of: of.collect() }
+        Stretches { cache: self.cache, shown: self.shown, of: of.collect() }
     }
 
     fn get<T: DeserializeOwned>(&self, stretch: usize, what: &impl Serialize) -> Option<T> {
@@ -186,22 +197,30 @@ impl Stretches {
         get(&*self.cache, &(stretch.pictures, "facts"))
     }
 
-    /// Keeps something of the pictures of a stretch.
-    pub fn keep_facts(&self, stretch: &Stretch, facts: &impl Serialize) {
-        keep(&*self.cache, &(stretch.pictures, "facts"), facts);
+    /// Keeps something of the pictures of a stretch. Of a picture that has changed during the run nothing is kept.
+    pub fn keep_facts(&self, stretch: &Stretch, facts: &impl Serialize, frames: &Looks) {
+        if still_shows(&self.shown, stretch.range, frames) {
+            keep(&*self.cache, &(stretch.pictures, "facts"), facts);
+        }
     }
 }
 
 impl Entry {
-    /// Whether it has a track for each frame of each member.
-    fn fits(&self, tasks: &[Task], members: &[usize]) -> bool {
-        let is_of = |track: &SpanTrack, span: Span| {
-            track.points.len() == span.len() && track.confidence.len() == track.points.len()
+    /// Whether it has a contour for each frame of each member, as this program would have written it: a folder may be shared with anybody.
+    fn fits(&self, scene: &Scene, tasks: &[Task], members: &[usize]) -> bool {
+        let is_of = |track: &SpanTrack, t: usize, span: Span| {
+            let Task { part, span: Span { first, last }, .. } = tasks[t];
+            let count = scene.parts[part].point_count();
+            first <= span.first && span.first < span.last && span.last <= last && is_track(track, span.len(), count)
+        };
+        let has_drawings = |(drawings, &t): (&Vec<Drawing>, &usize)| {
+            drawings.iter().all(|drawing| drawing.first <= drawing.last && drawing.last < tasks[t].span.len())
         };
         self.tracks.len() == members.len()
             && self.drawings.len() == members.len()
-            && self.tracks.iter().zip(members).all(|(track, &t)| is_of(track, tasks[t].span))
-            && self.finer.iter().all(|(m, span, track)| *m < members.len() && is_of(track, *span))
+            && self.drawings.iter().zip(members).all(has_drawings)
+            && self.tracks.iter().zip(members).all(|(track, &t)| is_of(track, t, tasks[t].span))
+            && self.finer.iter().all(|(m, span, track)| members.get(*m).is_some_and(|&t| is_of(track, t, *span)))
     }
 
     /// Whether any of the tracks was found in this run.
@@ -240,6 +259,14 @@ impl<'a> Input<'a> {
     fn says_something(&self) -> bool {
         !self.keys.is_empty() || !self.spans.is_empty()
     }
+}
+
+/// Whether a track has so many frames with so many points each.
+fn is_track(track: &SpanTrack, frames: usize, points: usize) -> bool {
+    let has_points = |contour: &Vec<Point>| contour.len() == points && contour.iter().all(|point| point.is_finite());
+    let is_sure = |sure: &Vec<f64>| sure.len() == points && sure.iter().all(|share| (0.0..=1.0).contains(share));
+    let [contours, confidence] = [track.points.len(), track.confidence.len()];
+    [contours, confidence] == [frames; 2] && track.points.iter().all(has_points) && track.confidence.iter().all(is_sure)
 }
 
 /// The frames of a stretch.

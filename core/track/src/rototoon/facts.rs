@@ -2,12 +2,12 @@
 //!
 //! Parts that stand still are looked for when all parts are tracked ([`holds`](super::holds)): which frames show the same drawing, where the picture goes around
 //! the parts, and whether it is the same inside a contour. All that needs the pictures, and would be the most work where the tracks come from the cache. Each answer
-//! is true of these pictures, whatever the tracks are: it has its contour with it. So the answers of a stretch are kept by the marks of its pictures alone, and those for contours that are others now are
-//! not found.
+//! is true of these pictures, whatever the tracks are: it has its contour with it. So the answers of a stretch are kept by the marks of its pictures and by how they are looked at, which
+//! the kind of drawing decides: where a picture goes is not the same in colours and in tones. Answers for contours that are others now are not found.
 
-use super::Rototoon;
 use super::cached::{Stretch, Stretches};
 use super::holds::{Pan, Said};
+use super::{Looks, Rototoon};
 use rototoon_base::scene::FrameNumber;
 use serde::{Deserialize, Serialize};
 
@@ -39,10 +39,11 @@ impl Rototoon {
     }
 
     /// Keeps what is known of the pictures of stretches with new tracks, and of those of which the cache knew nothing.
-    pub(super) fn note(&self, stretches: &Stretches, unknown: &[bool]) {
+    pub(super) fn note(&self, stretches: &Stretches, unknown: &[bool], frames: &Looks) {
         for (stretch, _) in stretches.of.iter().zip(unknown).filter(|(stretch, unknown)| stretch.is_new || **unknown) {
             let (asked, pans) = self.holds.within(stretch.range);
-            stretches.keep_facts(stretch, &Facts { same: self.store.known_same(stretch.range), asked, pans });
+            let facts = Facts { same: self.store.known_same(stretch.range), asked, pans };
+            stretches.keep_facts(stretch, &facts, frames);
         }
     }
 }

@@ -177,7 +177,7 @@ impl SceneSolver for Rototoon {
             exchange::doubt(self.kit(&looks, progress), scene, &mut tracking)?;
         }
         if let (Some(stretches), Some(unknown)) = (&stretches, unknown) {
-            self.note(stretches, &unknown);
+            self.note(stretches, &unknown, &looks);
         }
         twins::doubt(scene, &mut tracking.parts);
         Ok(tracking)

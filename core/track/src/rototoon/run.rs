@@ -96,6 +96,8 @@ impl Rototoon {
                 Some(entry) => entry,
                 None => self.found(&mut run, s, &wobble)?,
             };
+            // Also where the tracks were known: the listener may cancel.
+            run.stretches[s].iter().try_for_each(|&t| run.shared.of(t).report("Tracking", 1.0))?;
             new.push(entry.is_new() && run.cache_to_fill(s).is_some());
             entry.into_run((tasks, &run.stretches[s]), &mut done, &mut finer);
         }
@@ -170,7 +172,7 @@ impl Rototoon {
         if stretch.iter().any(|&t| run.pooled[t].is_some()) {
             return None;
         }
-        let entry = run.cache_of(s)?.tracks(s, wobble, (tasks, stretch))?;
+        let entry = run.cache_of(s)?.tracks(s, wobble, (run.scene, tasks, stretch))?;
         for (&t, drawings) in stretch.iter().zip(&entry.drawings) {
             let name = run.scene.parts[tasks[t].part].name.clone();
             self.from_cache.insert((name, tasks[t].span), drawings.clone());
