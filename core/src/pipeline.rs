@@ -149,9 +149,7 @@ pub fn track_with_cache(
     cache: &Arc<FileCache>,
     progress: &dyn Progress,
 ) -> Result<Tracking, PipelineError> {
-    let tracking = track_by(document, folder, Tracker::with_cache(*options, cache.clone()), progress)?;
-    cache.trim();
-    Ok(tracking)
+    track_by(document, folder, Tracker::with_cache(*options, cache.clone()), progress)
 }
 
 fn track_by(

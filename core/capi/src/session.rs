@@ -325,13 +325,10 @@ impl Session {
 
 /// A tracker that finds what earlier sessions and the command line have tracked.
 fn tracker(options: TrackOptions) -> Tracker {
-    FileCache::of_user(None).map_or_else(
-        || Tracker::new(options),
-        |cache| {
-            cache.trim();
-            Tracker::with_cache(options, Arc::new(cache))
-        },
-    )
+    match FileCache::of_user(None) {
+        Some(cache) => Tracker::with_cache(options, Arc::new(cache)),
+        None => Tracker::new(options),
+    }
 }
 
 /// The footage's pictures, opened at first use.

@@ -61,8 +61,8 @@ impl FileCache {
         self.folder.join(&name[..2]).join(name.as_str())
     }
 
-    /// Removes the entries that were not used for the longest time, if there are too many bytes. Call it after a run.
-    pub fn trim(&self) {
+    /// Removes the entries that were not used for the longest time, if there are too many bytes.
+    fn trim(&self) {
         let mut entries = self.entries();
         let mut bytes: u64 = entries.iter().map(|(_, _, long)| long).sum();
         if bytes <= self.most {
@@ -89,6 +89,13 @@ impl FileCache {
             Some((data.modified().ok()?, entry.path(), data.len()))
         });
         found.collect()
+    }
+}
+
+/// Whatever was kept, too much does not stay: also not after an error, or at the end of a long session.
+impl Drop for FileCache {
+    fn drop(&mut self) {
+        self.trim();
     }
 }
 
@@ -168,7 +175,8 @@ mod tests {
     #[test]
     fn what_was_not_used_for_long_goes_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let cache = FileCache { most: 1000, ..FileCache::new(folder.path()) };
+        let mut cache = FileCache::new(folder.path());
+        cache.most = 1000;
         let other = folder.path().join("01").join("shot.json");
         for (k, long) in [(1, 300), (2, 301), (3, 302)] {
             cache.put(&[k; 32], &vec![0; long]);

@@ -96,7 +96,7 @@ use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelI
 use rototoon_base::scene::{Footage, FrameSource, Progress, Scene, Span};
 use run::READING;
 use stage::Kit;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use untouched::Untouched;
 
@@ -124,6 +124,8 @@ pub struct Rototoon {
     holds: holds::Memory,
     mechanisms: Mechanisms,
     cache: Option<Arc<dyn Cache>>,
+    /// The spans that were known before this call. What is remembered needs no cache.
+    remembered: BTreeSet<(String, Span)>,
     /// The stretches of the last run, if there is a cache.
     stretches: Option<Stretches>,
     /// Drawings of the spans that came from it.
@@ -239,6 +241,8 @@ impl Rototoon {
         progress: &dyn Progress,
     ) -> Result<Tracking, TrackError> {
         let scene = film.broad();
+        self.remembered = self.plain.keys().cloned().collect();
+        self.windows.clear();
         let unread = if tasks.iter().all(|task| self.knows(scene, task)) { 0.0 } else { READING };
         // A run without corrections and one with them, if there are any. The first one reads the pictures.
         let half = if film.untouched().is_some() { 0.5 * (1.0 + unread) } else { 0.0 };

@@ -38,7 +38,7 @@ struct Run<'a> {
     film: Option<&'a Film<'a>>,
     tasks: &'a [Task],
     stretches: Vec<Vec<usize>>,
-    /// By stretch: whether nothing of it is remembered from an earlier run.
+    /// By stretch: whether nothing of it is remembered from before the film was tracked this time.
     anew: Vec<bool>,
     frames: &'a Looks<'a>,
     shared: SharedProgress<'a>,
@@ -79,7 +79,8 @@ impl Rototoon {
         let all = Vec::from_iter(0..tasks.len());
         let marking = Portion { listener: &shared.reading(&all), range: [0.0, MARKING] };
         // What is remembered needs no cache: corrections are made one after the other, and are not to wait for a disk.
-        let anew = |stretch: &Vec<usize>| stretch.iter().all(|&t| !self.knows(scene, &tasks[t]));
+        let remembered = |t: usize| self.remembered.contains(&(scene.parts[tasks[t].part].name.clone(), tasks[t].span));
+        let anew = |stretch: &Vec<usize>| !stretch.iter().any(|&t| remembered(t));
         let anew: Vec<bool> = stretches.iter().map(anew).collect();
         let cached = match anew.contains(&true) {
             true => self.cached((scene, film), (tasks, &stretches), frames, &marking)?,
@@ -150,7 +151,9 @@ impl Rototoon {
             let tasks: Vec<usize> = batch.iter().flat_map(|&s| run.stretches[s].iter().copied()).collect();
             range(run.tasks, &tasks)
         };
-        self.windows = if run.is_long { batches.iter().map(window).collect() } else { Vec::new() };
+        if run.is_long {
+            self.windows.extend(batches.iter().map(window));
+        }
         Ok(batches)
     }
 
