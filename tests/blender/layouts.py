@@ -47,7 +47,8 @@ class Layout:
         module, name = idname.split(".")
         known = getattr(getattr(bpy.ops, module), name).get_rna_type().properties
         made = self._settings(idname, known)
-        vars(made)["shown"] = options.get("text", "")
+        if options.get("text"):
+            vars(made)["shown"] = options["text"]
         return made
 
     def operator_menu_enum(self, idname, name, **options):

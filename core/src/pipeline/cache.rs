@@ -1,6 +1,6 @@
 //! A cache of files: tracks that are kept beyond the program, in a folder.
 //!
-//! Each entry is a file whose name is the mark of everything that it was made from ([`Cache`](crate::track::Cache)). So an entry is right or it is not there: nothing has to be
+//! Each entry is a file whose name is the mark of everything that it was made from ([`Cache`]). So an entry is right or it is not there: nothing has to be
 //! thrown away because a key, a picture or the program has changed. A file begins with the hash of what follows, and one that is damaged counts as missing.
 //!
 //! Several programs may use one folder, also on several machines: files appear whole. An entry that cannot be written is not kept, and nobody is
