@@ -62,6 +62,20 @@ def test_only_touched_spans_are_solved_again(session):
     assert {name: session.tracks(name).points.tolist() for name in session.parts()} == before
 
 
+def test_another_session_takes_what_one_has_tracked(document, folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROTOTOON_CACHE", str(tmp_path / "cache"))
+    found = []
+    for solved in (4, 0):
+        with Session.from_document(document, folder) as session:
+            summary = session.track()
+            assert (summary.solved, summary.reused) == (solved, 4 - solved)
+            found.append(session.document())
+    assert found[0] == found[1]
+    monkeypatch.setenv("ROTOTOON_CACHE", "none")
+    with Session.from_document(document, folder) as session:
+        assert session.track().solved == 4
+
+
 def test_set_document_keeps_what_is_known(session):
     session.track()
     document = session.document()
