@@ -64,7 +64,9 @@ fn terminated(id: &str) -> Result<CString, Failure> {
 
 fn type_of(kind: &EffectKind) -> &'static CStr {
     match kind {
-        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Shown => kOfxParamTypeString,
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Note | EffectKind::Shown => {
+            kOfxParamTypeString
+        }
         EffectKind::Button => kOfxParamTypePushButton,
         EffectKind::Flag(_) => kOfxParamTypeBoolean,
         EffectKind::Integer(..) | EffectKind::Mark => kOfxParamTypeInteger,
@@ -82,7 +84,9 @@ fn type_of(kind: &EffectKind) -> &'static CStr {
 /// Sets the default, the range and the choices of a parameter.
 fn values(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     match *kind {
-        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Shown => text(kind, properties),
+        EffectKind::File | EffectKind::Text | EffectKind::Hidden | EffectKind::Note | EffectKind::Shown => {
+            text(kind, properties)
+        }
         EffectKind::Button | EffectKind::Group(_) => Ok(()),
         EffectKind::Flag(default) => properties.set_int(kOfxParamPropDefault, 0, default.into()),
         EffectKind::Mark => mark(properties),
@@ -147,6 +151,12 @@ fn text(kind: &EffectKind, properties: &Properties) -> Result<(), Failure> {
     properties.set_name(kOfxParamPropStringMode, 0, kOfxParamStringIsSingleLine)?;
     match kind {
         EffectKind::Hidden => properties.set_int(kOfxParamPropSecret, 0, 1),
+        EffectKind::Note => {
+            for name in [kOfxParamPropEvaluateOnChange, kOfxParamPropCanUndo] {
+                let _ = properties.set_int(name, 0, 0);
+            }
+            properties.set_int(kOfxParamPropSecret, 0, 1)
+        }
         EffectKind::Shown => {
             // Nothing is read from it, so a host in which the user can change it is no worse.
             for name in [kOfxParamPropEvaluateOnChange, kOfxParamPropEnabled] {

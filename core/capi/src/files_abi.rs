@@ -49,7 +49,7 @@ pub unsafe extern "C" fn rototoon_file_replace(
             let path = text(path, path_length, "path")?;
             let content = text(content, content_length, "content")?;
             let read = known(text(read, read_length, "read")?)?;
-            let written = unchanged::replace(Path::new(path), content, read).map_err(Failure::error)?;
+            let written = unchanged::replace(Path::new(path), content, read.as_slice()).map_err(Failure::error)?;
             give(mark, RototoonText::new(written.to_string()));
             Ok(())
         })

@@ -5,8 +5,8 @@
 //! ([`Mark`]). If the file holds something else when the result is ready, the file stays as it is, the result goes into a new file beside it, and the caller
 //! gets an error with the names of both.
 //!
-//! The command line and the C ABI keep a [`Known`] of what they read and wrote. A host that keeps documents itself, such as Blender, keeps marks as text in
-//! its own file, and calls [`replace`].
+//! The command line and the C ABI keep a [`Known`] of what they read and wrote. A host that keeps documents itself, such as Blender or a compositor, keeps
+//! marks as text in its own file, and calls [`replace`].
 //!
 //! Limits: between the last look and the writing another program may still write, within milliseconds. Pipes and devices are not compared. A file that nobody
 //! read here is replaced: the user chose its name.
@@ -94,7 +94,7 @@ impl Known {
     pub fn save(&mut self, document: &Document, to: &Path) -> Result<(), ReplaceError> {
         let text = document.to_save(to)?;
         let read = real(to).ok().and_then(|file| self.0.get(&file).copied());
-        let mark = replace(to, &text, read)?;
+        let mark = replace(to, &text, read.as_slice())?;
         if let (Ok(file), true) = (real(to), is_file(to)) {
             self.0.insert(file, mark);
         }
@@ -102,17 +102,17 @@ impl Known {
     }
 }
 
-/// Writes a text over a file, completely or not at all, unless the file holds something else than when the mark `read` was taken. Without a mark the file is
-/// replaced. Returns the mark of the text.
+/// Writes a text over a file, completely or not at all, unless the file holds something else than when one of the marks `read` was taken. Without marks the
+/// file is replaced. Returns the mark of the text.
 ///
 /// # Errors
 ///
 /// A [`ReplaceError`].
-pub fn replace(path: &Path, text: &str, read: Option<Mark>) -> Result<Mark, ReplaceError> {
+pub fn replace(path: &Path, text: &str, read: &[Mark]) -> Result<Mark, ReplaceError> {
     let result = Mark::of_bytes(text.as_bytes());
     // Where another program wrote the same result, nothing would be lost.
-    let is_changed = |read| is_file(path) && ![Some(read), Some(result)].contains(&Mark::of(path));
-    if !read.is_some_and(is_changed) {
+    let is_changed = || is_file(path) && Mark::of(path).is_none_or(|found| found != result && !read.contains(&found));
+    if read.is_empty() || !is_changed() {
         write_whole(path, text.as_bytes())?;
         return Ok(result);
     }
@@ -192,11 +192,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("shot.json");
         fs::write(&path, "old").unwrap();
-        let read = Mark::of(&path);
+        let read = Mark::of(&path).unwrap();
         fs::write(&path, "new").unwrap();
-        let mark = replace(&path, "new", read).unwrap();
+        let mark = replace(&path, "new", &[read]).unwrap();
         assert_eq!(Mark::parse(&mark.to_string()), Mark::of(&path));
-        assert!(replace(&path, "newer", read).is_err());
+        assert!(replace(&path, "newer", &[read]).is_err());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 
@@ -207,11 +207,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("shot.json");
         fs::write(&path, "old").unwrap();
-        let read = Mark::of(&path);
+        let read = Mark::of(&path).unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o200)).unwrap();
         // The superuser reads every file.
         if fs::read(&path).is_err() {
-            assert!(matches!(replace(&path, "new", read), Err(ReplaceError::Changed { .. })));
+            assert!(matches!(replace(&path, "new", &[read]), Err(ReplaceError::Changed { .. })));
         }
     }
 

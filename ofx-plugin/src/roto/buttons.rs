@@ -2,9 +2,9 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
-use super::instance::{NO_SHAPES, ORIGIN};
+use super::state::FileMark;
 use super::track::BUSY;
-use super::{choosing, edits, fresh, instance, listing, marks, page, stored, taking_out, track, visits};
+use super::{choosing, edits, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -14,6 +14,7 @@ use openfx::sys::generic::core::{
 use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
 use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::file;
+use rototoon::pipeline::unchanged::Mark;
 use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
 use rototoon::project::path::slashed;
@@ -81,7 +82,7 @@ fn used(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
         edit if EDITS.contains(&edit) && instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
         "load" => load(effect),
         "project" if is_new_file(effect)? => load(effect),
-        "save" => save(effect),
+        "save" => saving::save(effect),
         "track" => track::track(effect, time),
         edit if EDITS.contains(&edit) => edits::press(effect, edit, time),
         "rename" => edits::rename(effect, time),
@@ -117,7 +118,8 @@ fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
     Ok(path.is_file() && (empty || !loaded))
 }
 
-fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
+/// The project's path, which the user must have chosen.
+pub fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
     let path = path(effect)?;
     if path.as_os_str().is_empty() {
         return Err(Failure::Told("choose a project file first".into()));
@@ -134,7 +136,8 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     if let Some(extension) = foreign(&path) {
         return import(effect, &path, &extension);
     }
-    instance(effect)?.known().remember(&path);
+    // The mark comes first: what is written in between counts as a change.
+    let mark = Mark::of(&path).map_or_else(String::new, |mark| mark.to_string());
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
     let folder = folder(&path);
     let pattern = &mut document.scene.footage.pattern;
@@ -143,11 +146,11 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     {
         *pattern = slashed(&Path::new(&folder.replace('%', "%%")).join(&*pattern));
     }
-    edits::store_loaded(effect, &document, &path.to_string_lossy())
+    edits::store_loaded(effect, &document, &FileMark { path: path.to_string_lossy().into_owned(), mark })
 }
 
 /// The extension of a file of shapes of another program.
-fn foreign(path: &Path) -> Option<String> {
+pub fn foreign(path: &Path) -> Option<String> {
     let extension = path.extension()?.to_str()?.to_ascii_lowercase();
     ShapeFormat::of(&extension, 0).map(|_| extension)
 }
@@ -171,36 +174,8 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     Ok(())
 }
 
-/// Writes the composition's shapes to the project's file, but not over what another program wrote there since this instance read or saved it. Footage below
-/// the file's folder gets a relative path.
-///
-/// Limit: a composition that was opened again does not know what the file held before.
-fn save(effect: &Effect) -> Result<(), Failure> {
-    let path = chosen(effect)?;
-    if foreign(&path).is_some() {
-        let shown = path.display();
-        return Err(Failure::Told(format!(
-            "project: found {shown}, expected a project document; Export writes other files"
-        )));
-    }
-    let text = effect.parameters()?.text(c"document")?;
-    if text.trim().is_empty() {
-        return Err(Failure::Told(NO_SHAPES.into()));
-    }
-    let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
-    let json = stored::decode(&text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;
-    let mut document = Document::parse(&json, ORIGIN).map_err(|error| told(&error))?;
-    let folder = folder(&path);
-    let pattern = &mut document.scene.footage.pattern;
-    if let Some(folder) = folder.to_str()
-        && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
-    {
-        *pattern = slashed(relative);
-    }
-    instance(effect)?.known().save(&document, &path).map_err(|error| told(&error))
-}
-
-fn folder(path: &Path) -> PathBuf {
+/// The folder of a file.
+pub fn folder(path: &Path) -> PathBuf {
     let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     whole.parent().map_or_else(PathBuf::new, Path::to_path_buf)
 }

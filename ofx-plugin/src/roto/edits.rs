@@ -4,7 +4,7 @@ use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, nami
 use super::parts::selected;
 use super::settings::Settings;
 use super::shared::Loaded;
-use super::state::State;
+use super::state::{FileMark, State};
 use super::{follow, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
@@ -47,7 +47,9 @@ fn store_from(
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let before = instance.document_of_text(&parameters)?;
+    let shown = if before.is_some() { None } else { instance.shown_file(&parameters)? };
     let edited = |state: &mut State, document: &Document| {
+        shown.iter().for_each(|file| state.note_file(file));
         if let Some(path) = path {
             path.clone_into(&mut state.loaded);
         }
@@ -78,18 +80,21 @@ fn store_from(
 pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
+    if instance.document_of_text(&parameters)?.is_none() {
+        instance.shown_file(&parameters)?.iter().for_each(|file| state.note_file(file));
+    }
     state.note_tracked(tracked.iter().map(|&part| &document.scene.parts[part]));
     let page = state.page.clone();
     write(effect, "Track", document, state, &page)
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
-pub fn store_loaded(effect: &Effect, document: &Document, path: &str) -> Result<(), Failure> {
+pub fn store_loaded(effect: &Effect, document: &Document, file: &FileMark) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     state.tracked.clear();
-    path.clone_into(&mut state.loaded);
+    state.note_file(file);
     state.keep_only(&document.scene.parts);
     write(effect, "Load project", document, state, &page)
 }

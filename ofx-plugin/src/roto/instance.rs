@@ -4,10 +4,10 @@ use super::edit::Editor;
 use super::film::Film;
 use super::shared::{self, Loaded};
 use super::stale::Stale;
-use super::state::State;
+use super::state::{FileMark, State};
 use super::stored;
 use crate::ofx::{Effect, Failure, Parameters};
-use rototoon::pipeline::unchanged::Known;
+use rototoon::pipeline::unchanged::Mark;
 use rototoon::project::Document;
 use rototoon::scene::Part;
 use std::collections::BTreeSet;
@@ -38,13 +38,14 @@ pub struct Instance {
     stale: Mutex<Stale>,
     tracking: AtomicBool,
     menu: Mutex<Vec<String>>,
-    known: Mutex<Known>,
 }
 
 /// A document, or why it could not be read.
 #[derive(Clone, Debug)]
 struct Read {
     origin: Origin,
+    /// What the file held.
+    mark: Option<Mark>,
     result: Result<Arc<Loaded>, String>,
 }
 
@@ -73,16 +74,18 @@ impl Instance {
         };
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
-            if let Origin::File(path, _) = &origin {
-                self.known().remember(Path::new(path));
-            }
+            // The mark comes first: what is written in between counts as a change.
+            let mark = match &origin {
+                Origin::Text(_) => None,
+                Origin::File(path, _) => Mark::of(Path::new(path)),
+            };
             let result = shared::document(&origin, || match &origin {
                 Origin::Text(text) => stored::decode(text)
                     .map_err(|error| format!("{ORIGIN}: {error}"))
                     .and_then(|json| Document::parse(&json, ORIGIN).map_err(|error| error.to_string())),
                 Origin::File(path, _) => Document::load(Path::new(path)).map_err(|error| error.to_string()),
             });
-            *read = Some(Read { origin, result });
+            *read = Some(Read { origin, mark, result });
         }
         match read.as_ref().map(|read| read.result.clone()) {
             Some(Ok(document)) => Ok(Some(document)),
@@ -94,6 +97,17 @@ impl Instance {
     /// The document stored in the composition; `None` if there is none.
     pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
         if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
+    }
+
+    /// The project's file as it was read, where the composition has no document of its own.
+    pub fn shown_file(&self, parameters: &Parameters) -> Result<Option<FileMark>, Failure> {
+        let project = parameters.text(c"project")?;
+        Ok(match lock(&self.read).as_ref() {
+            Some(Read { origin: Origin::File(path, _), mark: Some(mark), .. }) if *path == project => {
+                Some(FileMark { path: project, mark: mark.to_string() })
+            }
+            _ => None,
+        })
     }
 
     /// Drops the document, which can be read again, and the frames.
@@ -123,11 +137,6 @@ impl Instance {
             (text, state)
         }));
         state.clone().map_err(Failure::Told)
-    }
-
-    /// What project files held when this instance read or saved them.
-    pub fn known(&self) -> MutexGuard<'_, Known> {
-        lock(&self.known)
     }
 
     /// The selection and the pen's unfinished work.

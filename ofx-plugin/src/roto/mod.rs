@@ -20,7 +20,7 @@
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
 //! - [`listing`]: the list of the parts; [`choosing`]: selects a part from it
-//! - [`buttons`]: the buttons
+//! - [`buttons`]: the buttons; [`saving`]: *Save*, which writes over nothing that another program wrote
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
@@ -59,6 +59,7 @@ pub mod picture;
 pub mod placement;
 pub mod regions;
 pub mod render;
+pub mod saving;
 pub mod settings;
 pub mod shared;
 pub mod stale;

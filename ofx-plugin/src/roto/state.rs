@@ -190,6 +190,15 @@ pub fn falloff(rate: f64, index: usize) -> Falloff {
     Falloff { rate, curve: curve.map(|(curve, ..)| *curve) }
 }
 
+/// A file, and a mark of what it held ([`rototoon::pipeline::unchanged`]).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FileMark {
+    /// The path as the user chose it.
+    pub path: String,
+    /// The mark as text.
+    pub mark: String,
+}
+
 /// What an instance stores beside its document.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -201,6 +210,9 @@ pub struct State {
     /// file that is loaded already must not replace what was made since.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub loaded: String,
+    /// The document that the shapes were taken from, and what it held then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub read: Option<FileMark>,
     /// Settings by part name. Parts without an entry have the defaults.
     #[serde(default)]
     pub parts: BTreeMap<String, PartSettings>,
@@ -215,6 +227,7 @@ impl Default for State {
             version: VERSION,
             page: String::new(),
             loaded: String::new(),
+            read: None,
             parts: BTreeMap::new(),
             tracked: BTreeMap::new(),
         }
@@ -305,6 +318,12 @@ impl State {
     /// Makes the tracks of parts old because the source has changed since.
     pub fn note_stale<'a>(&mut self, parts: impl IntoIterator<Item = &'a Part>) {
         self.tracked.extend(parts.into_iter().map(|part| (part.name.clone(), OTHER_SOURCE.into())));
+    }
+
+    /// Notes that the shapes are those of a file.
+    pub fn note_file(&mut self, file: &FileMark) {
+        file.path.clone_into(&mut self.loaded);
+        self.read = Some(file.clone());
     }
 
     /// Drops what belongs to parts that are gone.

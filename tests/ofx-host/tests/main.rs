@@ -20,6 +20,7 @@
 //! - `lives`: instances on several threads, at other places and of other versions
 //! - `page`: the documentation lists the matrix's tests
 //! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
+//! - `saving`: *Save* beside other programs
 //! - `session`: the sample cartoon drawn, tracked and corrected in the host
 //! - `undo`: undo that the host reports as changes by the user
 //! - `lines`: the effect that shows the images that a tracker of edges uses
@@ -42,6 +43,7 @@ mod order;
 mod overlay;
 mod page;
 mod pixels;
+mod saving;
 mod session;
 mod shapes;
 mod standing;

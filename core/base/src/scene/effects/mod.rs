@@ -18,6 +18,8 @@ pub enum EffectKind {
     Text,
     /// Text that the user does not see.
     Hidden,
+    /// The same, of which no change is a step of undo. The picture does not depend on it.
+    Note,
     /// A line of text that the effect sets and the user reads. The picture does not depend on it.
     Shown,
     /// A button.

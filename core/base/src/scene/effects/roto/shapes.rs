@@ -8,7 +8,7 @@ const DRAW: Option<&str> = Some("draw");
 const PART: Option<&str> = Some("selectedPart");
 
 /// These parameters in order.
-pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
+pub const SHAPE_PARAMETERS: [EffectParameter; 46] = [
     parameter("shapes", "Shapes", EffectKind::Group(true), None, "Where the shapes come from."),
     parameter(
         "project",
@@ -25,8 +25,9 @@ pub const SHAPE_PARAMETERS: [EffectParameter; 45] = [
         "State",
         EffectKind::Hidden,
         SHAPES,
-        "The settings of the parts, and what their tracks were made from.",
+        "The settings of the parts, what their tracks were made from, and what the file held that the shapes are from.",
     ),
+    parameter("saved", "Saved", EffectKind::Note, SHAPES, "What the node last saved, and where."),
     parameter(
         "frameOffset",
         "Frame offset",

@@ -1,0 +1,76 @@
+//! *Save*: writes the composition's shapes to the project's file, but not over what another program wrote there.
+//!
+//! A composition holds its shapes for days, on several machines, while the file that they were taken from may get other ones. So the hidden text `state` names
+//! the file and has a mark of what it held when the shapes were taken ([`FileMark`]). Undo and redo change the shapes and the mark together: shapes that come back never take a file
+//! for theirs that was written since. What *Save* itself wrote is noted in the hidden text `saved`, which is no step of undo, because undo takes no file back. A
+//! file that holds neither was written by another program. It stays as it is, and the shapes go into a new file beside it.
+//!
+//! Limits: a file from which no shapes were taken is replaced, because the user chose its name. Compositions of earlier versions have no marks until they load
+//! or save. Hosts that do not know parameters without undo make a step of *Save*.
+
+use super::buttons::{chosen, folder, foreign};
+use super::instance::{NO_SHAPES, ORIGIN};
+use super::state::FileMark;
+use super::{instance, stored};
+use crate::ofx::{Effect, Failure};
+use rototoon::pipeline::unchanged::{self, Mark};
+use rototoon::project::Document;
+use rototoon::project::path::{real, slashed};
+use std::path::Path;
+
+/// Most files of which a node notes what it saved.
+const MOST_SAVED: usize = 16;
+
+/// Writes the composition's shapes to the project's file. Footage below the file's folder gets a relative path.
+pub fn save(effect: &Effect) -> Result<(), Failure> {
+    let path = chosen(effect)?;
+    if foreign(&path).is_some() {
+        let shown = path.display();
+        return Err(Failure::Told(format!(
+            "project: found {shown}, expected a project document; Export writes other files"
+        )));
+    }
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
+    let text = document(&parameters.text(c"document")?, &path)?.to_save(&path).map_err(|error| told(&error))?;
+    let mut saved = notes(&parameters.text(c"saved")?);
+    let read = instance.state(&parameters)?.read.clone();
+    let mark =
+        unchanged::replace(&path, &text, &marks(read.iter().chain(&saved), &path)).map_err(|error| told(&error))?;
+    saved.retain(|file| !is_same(Path::new(&file.path), &path));
+    saved.push(FileMark { path: path.to_string_lossy().into_owned(), mark: mark.to_string() });
+    saved.drain(..saved.len().saturating_sub(MOST_SAVED));
+    parameters.set_text(c"saved", &serde_json::to_string(&saved).unwrap_or_default())
+}
+
+/// The document to write, from the composition's text.
+fn document(text: &str, path: &Path) -> Result<Document, Failure> {
+    if text.trim().is_empty() {
+        return Err(Failure::Told(NO_SHAPES.into()));
+    }
+    let json = stored::decode(text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;
+    let mut document = Document::parse(&json, ORIGIN).map_err(|error| Failure::Told(error.to_string()))?;
+    let folder = folder(path);
+    let pattern = &mut document.scene.footage.pattern;
+    if let Some(folder) = folder.to_str()
+        && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
+    {
+        *pattern = slashed(relative);
+    }
+    Ok(document)
+}
+
+/// The files that were saved. A text that cannot be read notes none: then *Save* rather makes one more file.
+fn notes(text: &str) -> Vec<FileMark> {
+    serde_json::from_str(text).unwrap_or_default()
+}
+
+/// The marks of a file.
+fn marks<'a>(known: impl Iterator<Item = &'a FileMark>, path: &Path) -> Vec<Mark> {
+    known.filter(|file| is_same(Path::new(&file.path), path)).filter_map(|file| Mark::parse(&file.mark)).collect()
+}
+
+/// Whether two paths lead to one file.
+fn is_same(one: &Path, other: &Path) -> bool {
+    one == other || matches!((real(one), real(other)), (Ok(one), Ok(other)) if one == other)
+}

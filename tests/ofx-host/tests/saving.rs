@@ -1,0 +1,110 @@
+//! Tests of *Save* beside other programs: what they wrote stays, whatever is undone, and in compositions that are opened again.
+
+use crate::common::{FILTER, OK, clean, document, effect, host, scene};
+use rototoon::project::Document;
+use rototoon_ofx_host::{ClipSettings, Effect, Host};
+use std::path::{Path, PathBuf};
+
+/// Another program's version of the document.
+fn theirs() -> String {
+    let theirs = document().replace("\"parts\"", "\"note\": \"theirs\", \"parts\"");
+    assert_ne!(theirs, document());
+    theirs
+}
+
+fn project(folder: &Path) -> PathBuf {
+    let file = folder.join("project.json");
+    std::fs::write(&file, document()).unwrap();
+    file
+}
+
+/// A node that shows a file without having loaded it, as a script makes it.
+fn shows<'a>(host: &'a Host, file: &Path) -> Effect<'a> {
+    let mut effect = effect(host, FILTER, &ClipSettings::default());
+    effect.set_text_silently("document", "");
+    effect.set_text_silently("project", file.to_str().unwrap());
+    effect
+}
+
+fn refuses_to_save(host: &Host, effect: &mut Effect, file: &Path) {
+    assert_eq!(effect.press("save"), "kOfxStatFailed");
+    let said = host.messages().pop().unwrap_or_default();
+    assert!(said.contains("another program wrote the file meanwhile"), "{said}");
+    assert_eq!(std::fs::read_to_string(file).unwrap(), theirs());
+}
+
+#[test]
+fn shapes_that_redo_brings_back_do_not_take_a_newer_file_for_theirs() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = project(folder.path());
+    let mut effect = shows(&host, &file);
+    // The first edit takes the file's shapes into the composition.
+    assert_eq!((effect.press("nextPart"), effect.press("farther")), (OK.into(), OK.into()), "{:?}", host.messages());
+    assert_ne!(effect.text("document"), "");
+    while !effect.history().is_empty() {
+        effect.undo_told(false);
+    }
+    assert_eq!(effect.text("document"), "");
+    // Now the node shows the file again, which another program has written.
+    std::fs::write(&file, theirs()).unwrap();
+    assert_eq!(effect.region_of_definition(2.0, 1.0).status, OK);
+    while effect.text("document").is_empty() {
+        effect.redo_told();
+    }
+    refuses_to_save(&host, &mut effect, &file);
+    clean(&host);
+}
+
+#[test]
+fn a_composition_that_is_opened_again_knows_what_its_file_held() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = project(folder.path());
+    let mut first = shows(&host, &file);
+    assert_eq!(
+        (first.press("load"), first.press("nextPart"), first.press("farther")),
+        (OK.into(), OK.into(), OK.into())
+    );
+    let steps = first.history().len();
+    assert_eq!((first.press("save"), first.history().len()), (OK.into(), steps), "saving is no step of undo");
+    let texts = ["project", "document", "state", "saved"].map(|id| (id, first.text(id)));
+    let reopened = || {
+        let mut again = effect(&host, FILTER, &ClipSettings::default());
+        for (id, text) in &texts {
+            again.set_text_silently(id, text);
+        }
+        again
+    };
+    assert_eq!(reopened().press("save"), OK);
+    assert_ne!(Document::load(&file).unwrap().scene, scene());
+    std::fs::write(&file, theirs()).unwrap();
+    let mut again = reopened();
+    refuses_to_save(&host, &mut again, &file);
+    // A damaged note is none: the file is rather kept than replaced.
+    std::fs::write(&file, document()).unwrap();
+    again.set_text_silently("saved", "{");
+    assert_eq!(again.press("save"), OK, "the file holds what the shapes were taken from");
+    std::fs::write(&file, theirs()).unwrap();
+    again.set_text_silently("saved", "{");
+    refuses_to_save(&host, &mut again, &file);
+}
+
+#[test]
+fn what_the_node_saved_is_its_own_whatever_is_undone() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = project(folder.path());
+    let mut effect = shows(&host, &file);
+    assert_eq!(
+        (effect.press("load"), effect.press("nextPart"), effect.press("farther")),
+        (OK.into(), OK.into(), OK.into())
+    );
+    assert_eq!(effect.press("save"), OK);
+    effect.undo_told(false);
+    assert_eq!(effect.press("save"), OK, "{:?}", host.messages());
+    // A file from which no shapes were taken is the user's choice.
+    let other = folder.path().join("other.json");
+    std::fs::write(&other, theirs()).unwrap();
+    effect.set_text_silently("project", other.to_str().unwrap());
+    assert_eq!(effect.press("save"), OK);
+    assert_eq!(Document::load(&other).unwrap().scene, Document::load(&file).unwrap().scene);
+    clean(&host);
+}
