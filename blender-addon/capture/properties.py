@@ -99,6 +99,7 @@ class RototoonPart(bpy.types.PropertyGroup):
     ends: bpy.props.StringProperty(
         description="Where the track of a part with one key ends before the footage does: [[picture, reason], ...]"
     )
+    unseen: bpy.props.StringProperty(description="Where the part can probably not be seen, as the last Track found: [picture, ...]")
 
 
 class CaptureSettings:

@@ -17,7 +17,7 @@ from ..blender import guard, preferences
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.wording import counted, listed
-from . import document, ends, exchanged, identity, sessions, writing
+from . import document, ends, exchanged, identity, sessions, unseen, writing
 
 OUTWARD = "rototoon"
 """The method that tracks a part with one key outward from that key."""
@@ -93,6 +93,7 @@ def finishing(ob, run: Run) -> Iterator[float]:
     strokes = yield from writing_tracks(ob, reading, run.entry.session)
     note_ends(ob, reading, run.worker.result.ends)
     exchanged.note(ob, run.worker.result.exchanges)
+    unseen.note(ob, run.worker.result.unseen)
     run.entry.inputs, run.entry.preset = reading.document, run.preset
     run.entry.closed = reading.found.closed_names
     ob.data.update_tag()

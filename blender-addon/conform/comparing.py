@@ -11,7 +11,7 @@ from rototoon import Conformed, Session
 from rototoon.fills import Recolour
 
 from ..blender import footage, stage
-from ..capture import document, ends, exchanged
+from ..capture import document, ends, exchanged, unseen
 from ..common import jobs, kept
 from ..exchange import files, further
 from ..paint import recolours
@@ -98,6 +98,8 @@ def put(ob, compared: Compared, times: Times) -> None:
         item.extra = files.unknown_of_part(entry)
         there = ((times.picture(picture), reason) for picture, reason in ends.of(item))
         ends.put(item, [(picture, reason) for picture, reason in there if picture is not None])
+        asked = (times.picture(picture) for picture in unseen.stored(item))
+        unseen.put(item, [picture for picture in asked if picture is not None])
     moved = [(a, b, [times.picture(picture) for picture in pictures]) for a, b, pictures in exchanged.rows_of(ob)]
     exchanged.put(ob, [(a, b, [picture for picture in pictures if picture is not None]) for a, b, pictures in moved])
     if compared.recolours or recolours.entries(ob):

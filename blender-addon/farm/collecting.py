@@ -23,7 +23,7 @@ from rototoon.documents import by_frame
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
-from ..capture import contours, document, ends, exchanged, identity, sessions, snapping, tracking, writing
+from ..capture import contours, document, ends, exchanged, identity, sessions, snapping, tracking, unseen, writing
 from ..capture.document import Reading
 from ..exchange import files
 from ..exchange.fields import wrong
@@ -165,6 +165,9 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     _note_ends(ob, sent, now)
     # They were found in contours that are gone.
     exchanged.put(ob, [row for row in exchanged.rows_of(ob) if not any(frames.get(number) for number in row[:2])])
+    for item in ob.rototoon.parts:
+        if frames.get(item.number):
+            unseen.put(item, [])
     left = tracking.contour_layers(ob)
     snapped = _write_curves(ob, reading, sent, frames, taken)
     taken.left = "; ".join(filter(None, (guard.left_out(left, hidden=True), snapped)))

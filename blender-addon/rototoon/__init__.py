@@ -39,7 +39,7 @@ from . import fills, lines, style, tween
 from .about import library_path, parameters, version
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .outcomes import outcomes
-from .results import Conformed, End, Exchange, Job, Outcome, Outcomes, Summary, Track, WeakestFrame
+from .results import Conformed, End, Exchange, Job, Outcome, Outcomes, Summary, Track, Unseen, WeakestFrame
 from .session import Session
 from .strokes import Guides, Pieces, Strokes, fit_strokes, hidden_lines, match_contours
 
@@ -59,6 +59,7 @@ __all__ = [
     "Strokes",
     "Summary",
     "Track",
+    "Unseen",
     "WeakestFrame",
     "fills",
     "fit_strokes",

@@ -47,6 +47,15 @@ class Exchange:
 
 
 @dataclass(frozen=True)
+class Unseen:
+    """A part that can probably not be seen on some frames: nearer parts or the edge of the picture hide it."""
+
+    part: str
+    frames: list[int]
+    """They rise."""
+
+
+@dataclass(frozen=True)
 class Summary:
     """Result of `Session.track`."""
 
@@ -56,6 +65,8 @@ class Summary:
     """Ends of parts with one key: parts in the document's order, the end before the key first."""
     exchanges: list[Exchange]
     """Parts that may have changed places, in the document's order."""
+    unseen: list[Unseen]
+    """Parts that can probably not be seen somewhere, in the document's order."""
 
     @property
     def solved(self) -> int:

@@ -19,7 +19,7 @@ from .lines import Traced
 from .native import handles
 from .native.arrays import as_json, buffer, pair, text
 from .native.errors import RototoonError
-from .results import Conformed, End, Exchange, Job, Summary, Track, WeakestFrame
+from .results import Conformed, End, Exchange, Job, Summary, Track, Unseen, WeakestFrame
 from .types import Document, Points, Progress
 
 
@@ -159,7 +159,8 @@ class Session:
 
         The preset ``rototoon`` also follows a part that has one key, before and after that key, as far as the track can be
         trusted. `Summary.ends` says where the track ends and why. The document's ``wants_key`` lists where the part was lost.
-        `Summary.exchanges` are parts that look alike and may have changed places.
+        `Summary.exchanges` are parts that look alike and may have changed places, `Summary.unseen` parts that something hides: ``absent`` of the document says
+        that they have no contour there.
 
         Spans that have not changed since this session last solved them are not solved again. Snapped curves of frames whose
         track changed are removed. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or ``liang2012``. `threads` is the
@@ -168,7 +169,8 @@ class Session:
         options = {"preset": preset, "threads": threads}
         summary = self._long("rototoon_session_track", options, progress)
         exchanges = [Exchange((*found["parts"],), found["frames"]) for found in summary["exchanges"]]
-        return Summary([Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]], exchanges)
+        unseen = [Unseen(**found) for found in summary["unseen"]]
+        return Summary([Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]], exchanges, unseen)
 
     def snap(self, progress: Progress | None = None, *, threads: int = 0, **options: Any) -> None:
         """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.

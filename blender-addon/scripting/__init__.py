@@ -22,7 +22,7 @@ from .delivered import Moved, conform
 from .keys import set_key
 from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
 from .paint import Painted, Recoloured, Region, fill_drawings, fill_region, recolour, recolours, regions, remove_recolour
-from .reading import End, Exchange, Part, Track, ends, exchanges, lost_frames, parts, tracks, wanted_keys, weakest_frame
+from .reading import End, Exchange, Part, Track, ends, exchanges, lost_frames, parts, tracks, unseen, wanted_keys, weakest_frame
 from .work import Tracked, track
 
 __all__ = [
@@ -57,6 +57,7 @@ __all__ = [
     "trace_drawing",
     "track",
     "tracks",
+    "unseen",
     "wanted_keys",
     "weakest_frame",
 ]

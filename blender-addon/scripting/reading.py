@@ -13,6 +13,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..capture import contours, document, exchanged
+from ..capture import unseen as part_unseen
 from ..capture import ends as track_ends
 from ..capture.doubt import weakest
 from ..common.operators import OnContours
@@ -140,6 +141,13 @@ def exchanges(ob: bpy.types.Object) -> list[Exchange]:
     """Parts that may have changed places, as the last Track found them."""
     need(ob, OnContours, guard.NOTHING)
     return [Exchange(pair.parts, pair.frames) for pair in exchanged.of(ob)]
+
+
+@told
+def unseen(ob: bpy.types.Object) -> dict[str, list[int]]:
+    """By part the frames on which it can probably not be seen, as the last Track found them, without those on which it is marked as hidden."""
+    need(ob, OnContours, guard.NOTHING)
+    return {question.part: list(question.frames) for question in part_unseen.questions(ob)}
 
 
 def wanted_keys(ob: bpy.types.Object) -> dict[str, list[int]]:

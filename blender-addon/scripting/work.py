@@ -9,7 +9,7 @@ from rototoon.types import Progress
 
 from ..blender import guard
 from ..blender.errors import Problem
-from ..capture import document, exchanged, properties, tracking
+from ..capture import document, exchanged, properties, tracking, unseen
 from ..capture import ends as track_ends
 from ..common import jobs
 from ..common.operators import OnContours
@@ -66,5 +66,5 @@ def track(ob: bpy.types.Object, method: str = "", progress: Progress | None = No
     summary, offset = run.worker.result, ob.rototoon.frame_offset
     ends = tuple(End(end.part, end.frame + offset, end.reason) for end in summary.ends)
     left = guard.left_out(tracking.contour_layers(ob), hidden=True)
-    warnings = tuple(text for text in (tracking.where_to_look(ob, run), *exchanged.told(ob), left) if text)
+    warnings = tuple(text for text in (tracking.where_to_look(ob, run), *exchanged.told(ob), *unseen.told(ob), left) if text)
     return Tracked(strokes, summary.solved, summary.reused, ends, warnings)

@@ -19,6 +19,8 @@ PAGES = (
     ("bpy.ops.rototoon.*pins*", "artist/corrections.html"),
     ("bpy.ops.rototoon.weakest_frame*", "artist/corrections.html"),
     ("bpy.ops.rototoon.exchanged_parts*", "artist/corrections.html"),
+    ("bpy.ops.rototoon.unseen_part*", "artist/corrections.html"),
+    ("bpy.ops.rototoon.hide_unseen*", "artist/corrections.html"),
     ("bpy.ops.rototoon.hide_part*", "artist/corrections.html"),
     ("bpy.ops.rototoon.snap*", "artist/strokes.html"),
     ("bpy.ops.rototoon.fit_strokes*", "artist/strokes.html"),

@@ -78,7 +78,7 @@ class ROTOTOON_MT_main(_Menu):
         layout.operator_context = "INVOKE_DEFAULT"
         _entries(layout, "setup", "open_sample")
         layout.menu("ROTOTOON_MT_footage")
-        _entries(layout, "", "draw_contours", "new_key", "match_contours", "", "track", "weakest_frame", "exchanged_parts", "show_confidence", "hide_part")
+        _entries(layout, "", "draw_contours", "new_key", "match_contours", "", "track", "weakest_frame", "exchanged_parts", "unseen_part", "show_confidence", "hide_part", "hide_unseen")
         layout.operator_menu_enum("rototoon.release_pins", "which")
         _entries(layout, "clear_generated", "", "snap", "")
         for name in ("strokes", "tween", "lines", "paint", "style"):

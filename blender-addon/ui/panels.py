@@ -5,7 +5,7 @@ Only what an artist needs all the time is open at first.
 
 import bpy
 
-from ..capture import absence, ends, exchanged, live, stand
+from ..capture import absence, ends, exchanged, live, stand, unseen
 from ..common.wording import counted
 from ..paint import recolours
 from ..style import clip_browser, limbs
@@ -124,6 +124,17 @@ def _draw_exchanged(layout, ob) -> None:
             row.operator("rototoon.exchanged_parts", text=text, icon="BLANK1" if line else "QUESTION", emboss=False).pair = number
 
 
+def _draw_unseen(layout, ob) -> None:
+    """What can probably not be seen. A click on it goes there; the button below says that it is so."""
+    for number, question in enumerate(unseen.questions(ob)):
+        column = layout.box().column(align=True)
+        for line, text in enumerate(lines_of(str(question), 30)):
+            row = column.row()
+            row.alignment = "LEFT"
+            row.operator("rototoon.unseen_part", text=text, icon="BLANK1" if line else "QUESTION", emboss=False).question = number
+        column.operator("rototoon.hide_unseen", text="Hide It There", icon="GHOST_ENABLED").question = number
+
+
 def _is_hidden_here(context, settings) -> bool:
     """Whether the part that is chosen in the list is marked as hidden on the current frame."""
     if settings.active_part >= len(settings.parts):
@@ -159,6 +170,7 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
             layout.label(text=text, icon=icon)
         _draw_ends(layout, settings)
         _draw_exchanged(layout, context.object)
+        _draw_unseen(layout, context.object)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"

@@ -16,11 +16,18 @@ class Summary:
     reused: int
     ends: list = field(default_factory=list)
     exchanges: list = field(default_factory=list)
+    unseen: list = field(default_factory=list)
 
 
 @dataclass
 class Exchange:
     parts: tuple
+    frames: list
+
+
+@dataclass
+class Unseen:
+    part: str
     frames: list
 
 

@@ -177,6 +177,10 @@ def _exchanged(addon, ob):
     addon("capture.exchanged").put(ob, [(*numbers, [2, 3])])
 
 
+def _unseen(addon, ob):
+    addon("capture.unseen").put(ob.rototoon.parts[0], [2, 3])
+
+
 def _on_generated(addon, ob):
     bpy.context.scene.frame_set(2)
 
@@ -325,6 +329,7 @@ OPERATORS = {
     "guess_bones": Call(on="Rig"),
     "help": Call(changes=False),
     "hide_part": Call(_C | {SNAPPED}, _C, prepare=_on_generated),
+    "hide_unseen": Call(_C | {SNAPPED}, _C, prepare=_unseen),
     "hidden_lines": Call(_I | {SNAPPED, LIMBS}),
     "import_document": Call(_C | {SNAPPED}, _C | {SNAPPED}, options={"filepath": "{folder}/given.json", "into": "ACTIVE"}),
     "import_motion": Call(changes=False, options={"filepath": "{folder}/walk.bvh", "replace": True}),
@@ -355,6 +360,7 @@ OPERATORS = {
     "trace_image": Call(_L, prepare=_one_traced_and_reference),
     "suggest_breakdown": Call(changes=False),
     "track": Call(_C, _C, prepare=_not_tracked),
+    "unseen_part": Call(changes=False, prepare=_unseen),
     "update_in_betweens": Call(_I, prepare=_in_between_and_moved),
     "weakest_frame": Call(changes=False),
 }

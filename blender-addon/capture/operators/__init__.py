@@ -15,6 +15,7 @@ from . import (
     show_confidence,
     snap,
     track,
+    unseen_part,
     weakest_frame,
 )
 
@@ -32,6 +33,7 @@ _MODULES = (
     show_confidence,
     weakest_frame,
     exchanged_parts,
+    unseen_part,
     hide_part,
     clear_generated,
 )

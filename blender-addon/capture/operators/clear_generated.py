@@ -6,7 +6,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...common.operators import Guarded
 from ...common.wording import counted, joined, stayed
-from .. import exchanged, snapping, stand, writing
+from .. import exchanged, snapping, stand, unseen, writing
 from ..polls import WithGenerated
 
 
@@ -47,6 +47,7 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
             cleared += writing.clear(layer, frames, keep_corrected=keep)
         if not stand.has_generated(ob):
             exchanged.put(ob, [])
+            unseen.note(ob, [])
         ob.data.update_tag()
         self.warn(guard.left_out(every))
         said = f"{counted(cleared, 'generated drawing')} removed"

@@ -37,10 +37,8 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
         picture = frame - ob.rototoon.frame_offset
         if not ob.rototoon.first <= picture <= ob.rototoon.last:
             raise Problem(f"Frame {frame} has no picture of the footage")
-        found = contours.read(ob)
-        part = found.part(item.number)
-        layer = gp.find_layer(ob, found.layer_names[part.layer])
-        guard.need_open([layer], hidden=True)
+        part = contours.read(ob).part(item.number)
+        need_open(ob, part)
         time = absence.time_of(item, picture)
         if frame in part.keys and time is None:
             raise Problem(f'"{item.name}" has a key on frame {frame}: remove the key first if the part is hidden here')
@@ -48,21 +46,7 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
             absence.show(item, *(time if self.frames == "STRETCH" else (picture, picture)))
             live.note(ob)
             return f'"{item.name}" is there again' + ("" if ob.rototoon.live else ": press Track")
-        pictures = self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture]
-        absence.hide(item, pictures)
-        frames = [number + ob.rototoon.frame_offset for number in pictures]
-        corrected = [number for number in frames if _is_corrected(found, part, number)]
-        _remove(layer, part.number, frames)
-        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
-        if snapped is not None and _made(snapped, part.number, frames):
-            self.warn(guard.left_out([snapped]))
-            if not guard.closed(snapped):
-                _remove(snapped, part.number, frames)
-        if corrected:
-            self.warn(f"your corrections of it on {listed(corrected)} are gone: Undo brings them back")
-        ob.data.update_tag()
-        live.note(ob)
-        return f'"{item.name}" is hidden on {listed(frames)}'
+        return hide(self, ob, item, self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture])
 
     def _stretch(self, ob, part: contours.Part, frame: int) -> list[int]:
         """The pictures around a frame on which the part is lost."""
@@ -73,6 +57,31 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
         while last + 1 in lost:
             last += 1
         return [number - ob.rototoon.frame_offset for number in range(first, last + 1)]
+
+
+def need_open(ob, part: contours.Part) -> None:
+    """Raises `Problem` if the layer of a part's contours is locked."""
+    guard.need_open([gp.find_layer(ob, contours.read(ob).layer_names[part.layer])], hidden=True)
+
+
+def hide(operator: Guarded, ob, item, pictures: list[int]) -> str:
+    """Marks a part as hidden on some pictures, and removes its generated contours there. Returns what is to be told."""
+    found = contours.read(ob)
+    part = found.part(item.number)
+    absence.hide(item, pictures)
+    frames = [picture + ob.rototoon.frame_offset for picture in pictures]
+    corrected = [number for number in frames if _is_corrected(found, part, number)]
+    _remove(gp.find_layer(ob, found.layer_names[part.layer]), part.number, frames)
+    snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if snapped is not None and _made(snapped, part.number, frames):
+        operator.warn(guard.left_out([snapped]))
+        if not guard.closed(snapped):
+            _remove(snapped, part.number, frames)
+    if corrected:
+        operator.warn(f"your corrections of it on {listed(corrected)} are gone: Undo brings them back")
+    ob.data.update_tag()
+    live.note(ob)
+    return f'"{item.name}" is hidden on {listed(frames)}'
 
 
 def active_part(ob):

@@ -6,7 +6,7 @@ from ...blender import guard
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnContours
-from .. import contours, document, exchanged, identity, properties, set_back, stand, tracking
+from .. import contours, document, exchanged, identity, properties, set_back, stand, tracking, unseen
 
 
 class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
@@ -50,7 +50,7 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
         reset = set_back.note(self._ob, looks)
         for doubt in [reset, *self._tracking.doubts]:
             self.warn(doubt)
-        for text in [tracking.where_to_look(self._ob, self._tracking), *exchanged.told(self._ob)]:
+        for text in [tracking.where_to_look(self._ob, self._tracking), *exchanged.told(self._ob), *unseen.told(self._ob)]:
             self.warn(text)
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
         told = tracking.told(self._tracking, strokes, bool(reset)) + self._tracking.taken

@@ -44,12 +44,19 @@ struct Summary<'a> {
     jobs: Vec<JobSummary<'a>>,
     ends: Vec<EndSummary<'a>>,
     exchanges: Vec<ExchangeSummary<'a>>,
+    unseen: Vec<UnseenSummary<'a>>,
 }
 
 #[derive(Debug, Serialize)]
 struct ExchangeSummary<'a> {
     parts: [&'a str; 2],
     frames: &'a [FrameNumber],
+}
+
+#[derive(Debug, Serialize)]
+struct UnseenSummary<'a> {
+    part: &'a str,
+    frames: Vec<FrameNumber>,
 }
 
 #[derive(Debug, Serialize)]
@@ -202,7 +209,7 @@ impl Session {
             })
         })?;
         pipeline::store(&mut self.document.scene, &tracking);
-        Ok(summary(&scene, &tracking))
+        Ok(summary(&self.document.scene, &tracking))
     }
 
     /// Snaps the contours to the ink. Returns a summary as JSON.
@@ -365,6 +372,7 @@ fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
     })
 }
 
+/// The summary of what was tracked and stored in the scene.
 fn summary(scene: &Scene, tracking: &Tracking) -> String {
     let jobs = tracking.jobs.iter().map(|job| JobSummary {
         part: &scene.parts[job.part].name,
@@ -384,7 +392,16 @@ fn summary(scene: &Scene, tracking: &Tracking) -> String {
         parts: found.parts.map(|part| scene.parts[part].name.as_str()),
         frames: &found.frames,
     });
-    json!(Summary { jobs: jobs.collect(), ends: ends.collect(), exchanges: exchanges.collect() }).to_string()
+    let unseen =
+        (0..scene.parts.len()).map(|k| (k, pipeline::unseen(scene, k))).filter(|(_, frames)| !frames.is_empty());
+    let unseen = unseen.map(|(k, frames)| UnseenSummary { part: &scene.parts[k].name, frames });
+    json!(Summary {
+        jobs: jobs.collect(),
+        ends: ends.collect(),
+        exchanges: exchanges.collect(),
+        unseen: unseen.collect()
+    })
+    .to_string()
 }
 
 fn termination_id(termination: Termination) -> &'static str {

@@ -20,7 +20,8 @@ use std::ptr::null_mut;
 /// whose track changed are dropped.
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-/// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}]}`.
+/// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}],
+/// "unseen": [{"part", "frames": [frame]}]}`.
 ///
 /// - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 ///   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
@@ -29,6 +30,8 @@ use std::ptr::null_mut;
 ///   there) or "left" (the part left the picture).
 /// - `exchanges` has an entry for each two parts that look alike and may have changed places, with the frames on which nothing says which is which.
 ///   `rototoon_outcomes` has words for it.
+/// - `unseen` has an entry for each part that can probably not be seen on some frames, because nearer parts or the picture's edge hide it. Only a person
+///   knows; the document's `absent` says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,
