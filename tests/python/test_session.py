@@ -21,7 +21,7 @@ def test_track_fills_every_frame_and_keeps_keys(session, document):
         ("blau ü", 0, 6),
         ("blau ü", 6, 12),
     ]
-    assert (summary.solved, summary.reused, summary.exchanges) == (4, 0, [])
+    assert (summary.solved, summary.reused, summary.exchanges, summary.unseen) == (4, 0, [], [])
     for index, name in enumerate(session.parts()):
         track = session.tracks(name)
         assert (track.frames.format, track.frames.tolist()) == ("i", FRAMES)

@@ -418,20 +418,37 @@ fn termination_id(termination: Termination) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon::geometry::Point;
     use rototoon::track::Exchange;
 
     #[test]
     fn the_summary_names_parts_that_may_have_changed_places() {
         let part = |name: &str| Part { name: name.into(), ..Part::default() };
-        let document = Document::parse(
-            r#"{"rototoon": 1, "footage": {"pattern": "%d.png", "first": 0, "last": 9, "fps": 25, "width": 64, "height": 48}, "parts": []}"#,
-            ORIGIN,
-        );
-        let mut scene = document.unwrap().scene;
+        let mut scene = empty_scene();
         scene.parts = ["near leg", "head", "far leg"].map(part).into();
         let tracking =
             Tracking { exchanges: vec![Exchange { parts: [0, 2], frames: vec![3, 4, 7] }], ..Tracking::default() };
         let summary: Value = serde_json::from_str(&summary(&scene, &tracking)).unwrap();
         assert_eq!(summary["exchanges"], json!([{"parts": ["near leg", "far leg"], "frames": [3, 4, 7]}]));
+        assert_eq!(summary["unseen"], json!([]));
+    }
+
+    #[test]
+    fn the_summary_names_parts_that_can_probably_not_be_seen() {
+        let part = |name: &str, side: f64, depth: f64| {
+            let corners =
+                [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)].map(|(x, y)| Point::new(30.0 + x, 10.0 + y));
+            let (tracks, confidence) = ([(3, corners.to_vec())].into(), [(3, vec![0.1; 4])].into());
+            Part { name: name.into(), closed: true, depth, tracks, confidence, ..Part::default() }
+        };
+        let mut scene = empty_scene();
+        scene.parts = vec![part("hand", 6.0, 0.0), part("coat", 30.0, 1.0)];
+        let summary: Value = serde_json::from_str(&summary(&scene, &Tracking::default())).unwrap();
+        assert_eq!(summary["unseen"], json!([{"part": "hand", "frames": [3]}]));
+    }
+
+    fn empty_scene() -> Scene {
+        let text = r#"{"rototoon": 1, "footage": {"pattern": "%d.png", "first": 0, "last": 9, "fps": 25, "width": 64, "height": 48}, "parts": []}"#;
+        Document::parse(text, ORIGIN).unwrap().scene
     }
 }
