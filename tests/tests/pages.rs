@@ -18,7 +18,7 @@ fn values(kind: &EffectKind) -> (String, String) {
     match *kind {
         EffectKind::File => ("file".into(), String::new()),
         EffectKind::Text => ("text".into(), "empty".into()),
-        EffectKind::Hidden => ("text, hidden".into(), "empty".into()),
+        EffectKind::Hidden | EffectKind::Note => ("text, hidden".into(), "empty".into()),
         EffectKind::Shown => ("text, set by the node".into(), "empty".into()),
         EffectKind::Menu(first) => (format!("{first}, or a part"), first.into()),
         EffectKind::Button => ("button".into(), String::new()),
