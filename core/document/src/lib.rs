@@ -86,7 +86,7 @@ pub mod validate;
 pub use fields::{FieldError, described};
 pub use inputs::{Inputs, OverwritesInput};
 pub use load::LoadError;
-pub use output::{WriteError, write_whole};
+pub use output::{WriteError, write_unflushed, write_whole};
 pub use problem::{Problem, Problems, Severity};
 pub use save::SaveError;
 

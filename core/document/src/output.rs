@@ -46,10 +46,20 @@ pub struct WriteError {
 ///
 /// A [`WriteError`].
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write(path, bytes).map_err(|source| WriteError { path: path.to_owned(), source })
+    write(path, bytes, true).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
-fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
+/// As [`write_whole`], for a file whose loss costs time alone: nothing waits for the disk. After a crash of the system the file may have other bytes, so
+/// who reads it must check them.
+///
+/// # Errors
+///
+/// A [`WriteError`].
+pub fn write_unflushed(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    write(path, bytes, false).map_err(|source| WriteError { path: path.to_owned(), source })
+}
+
+fn write(path: &Path, bytes: &[u8], flush: bool) -> io::Result<()> {
     let existing = fs::metadata(path).ok();
     match &existing {
         Some(data) if data.is_dir() => return Err(io::Error::other("it is a folder, expected a file")),
@@ -75,11 +85,13 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(data) = existing {
         file.as_file().set_permissions(data.permissions())?;
     }
-    file.as_file().sync_all()?;
+    if flush {
+        file.as_file().sync_all()?;
+    }
     file.persist(&target)?;
     // The new name is on the disk only after the folder is flushed. On systems that cannot open folders, the system
     // does this.
-    if let Ok(folder) = File::open(folder) {
+    if let Some(folder) = flush.then(|| File::open(folder).ok()).flatten() {
         let _ = folder.sync_all();
     }
     Ok(())
