@@ -59,12 +59,12 @@ pub mod shared;
 pub mod tracker;
 pub mod zhou2011;
 
-pub use contract::cache::Cache;
+pub use contract::cache::{self, Cache};
 pub use contract::error::TrackError;
 pub use contract::job::{Correction, Job, SpanSolver, SpanSummary, SpanTrack, Termination};
 pub use contract::tracking::{Ending, Exchange, JobReport, PartTrack, SceneSolver, TrackEnd, Tracking};
 pub use rototoon::mechanisms::{Mechanism, Mechanisms};
-pub use shared::held::{began, drawings};
+pub use shared::compared::{began, drawings};
 pub use shared::hidden::{covers, hidden_share, is_under};
 pub use shared::twins::twins;
 pub use shared::weakest::{WeakestFrame, weakest_frame};

@@ -17,7 +17,7 @@ use super::finer::{Film, Found};
 use super::steady::{Member, Wobble};
 use super::untouched::Done;
 use super::{Looks, Rototoon, Task};
-use crate::contract::cache::{Cache, Mark};
+use crate::contract::cache::{Cache, Mark, TRACKER, keep, mark_of, recall};
 use crate::contract::error::TrackError;
 use crate::contract::job::SpanTrack;
 use crate::contract::tasks::Steps;
@@ -29,9 +29,6 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// The mark of the tracker's code (`build.rs`).
-const TRACKER: &str = env!("ROTOTOON_TRACKER");
 
 /// Drawings of the spans whose tracks came from the cache, by name and span.
 pub(super) type Drawings = BTreeMap<(String, Span), Vec<Drawing>>;
@@ -181,7 +178,7 @@ impl Cached {
     }
 
     fn get<T: DeserializeOwned>(&self, stretch: usize, what: &impl Serialize) -> Option<T> {
-        get(&*self.cache, &(self.marks.get(stretch)?, what))
+        recall(&*self.cache, &(self.marks.get(stretch)?, what))
     }
 
     fn keep(&self, stretch: usize, what: &impl Serialize, value: &impl Serialize) {
@@ -194,7 +191,7 @@ impl Cached {
 impl Stretches {
     /// What is kept of the pictures of a stretch.
     pub fn facts<T: DeserializeOwned>(&self, stretch: &Stretch) -> Option<T> {
-        get(&*self.cache, &(stretch.pictures, "facts"))
+        recall(&*self.cache, &(stretch.pictures, "facts"))
     }
 
     /// Keeps something of the pictures of a stretch. Of a picture that has changed during the run nothing is kept.
@@ -276,19 +273,4 @@ pub(super) fn range(tasks: &[Task], stretch: &[usize]) -> Span {
         first: spans().map(|span| span.first).min().unwrap_or(0),
         last: spans().map(|span| span.last).max().unwrap_or(0),
     }
-}
-
-fn get<T: DeserializeOwned>(cache: &dyn Cache, what: &impl Serialize) -> Option<T> {
-    postcard::from_bytes(&cache.get(&mark_of(what)?)?).ok()
-}
-
-fn keep(cache: &dyn Cache, what: &impl Serialize, value: &impl Serialize) {
-    if let (Some(mark), Ok(bytes)) = (mark_of(what), postcard::to_stdvec(value)) {
-        cache.put(&mark, &bytes);
-    }
-}
-
-/// The hash of a value.
-fn mark_of(value: &impl Serialize) -> Option<Mark> {
-    Some(*blake3::hash(&postcard::to_stdvec(value).ok()?).as_bytes())
 }

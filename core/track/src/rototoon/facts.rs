@@ -47,3 +47,78 @@ impl Rototoon {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Mechanisms;
+    use crate::contract::cache::{Cache, Mark};
+    use crate::contract::tasks::tasks;
+    use crate::shared::look::Kind;
+    use rototoon_base::geometry::Point;
+    use rototoon_base::scene::{Colour, Footage, FrameError, FrameSource, Part, Raster, Scene, Silent, Span};
+    use std::collections::BTreeMap;
+    use std::sync::{Arc, Mutex};
+
+    #[derive(Default)]
+    struct Shelf(Mutex<BTreeMap<Mark, Vec<u8>>>);
+
+    impl Cache for Shelf {
+        fn get(&self, mark: &Mark) -> Option<Vec<u8>> {
+            self.0.lock().unwrap().get(mark).cloned()
+        }
+
+        fn put(&self, mark: &Mark, bytes: &[u8]) {
+            self.0.lock().unwrap().insert(*mark, bytes.to_vec());
+        }
+    }
+
+    /// Pictures of which only the marks are asked for.
+    struct Marked(u8);
+
+    impl FrameSource for Marked {
+        fn picture(&self, _: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+            Ok(Arc::new(Raster::new(8, 6, [0.0; 3])))
+        }
+
+        fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+            Ok(Some([self.0 + frame as u8; 32]))
+        }
+    }
+
+    const SPAN: Span = Span { first: 0, last: 3 };
+
+    /// A tracker with this shelf, and the stretch of a part between its keys in pictures of a kind.
+    fn tracker(shelf: &Arc<Shelf>, looks: &Looks) -> (Rototoon, Stretches) {
+        let keys = [SPAN.first, SPAN.last].map(|frame| (frame, vec![Point::ZERO, Point::X, Point::ONE]));
+        let part = Part { name: "part".into(), closed: true, keys: keys.into(), ..Part::default() };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 3, fps: 12.0, width: 8, height: 6, held: false };
+        let scene = Scene { footage, parts: vec![part] };
+        let tracker = Rototoon::new(Mechanisms::default(), Some(shelf.clone()));
+        let cached = tracker.cached((&scene, None), (&tasks(&scene), &[vec![0]]), looks, &Silent).unwrap();
+        let stretches = cached.unwrap().done([(SPAN, true)].into_iter());
+        (tracker, stretches)
+    }
+
+    #[test]
+    fn where_a_picture_goes_is_known_for_the_same_kind_of_drawing_alone() {
+        let shelf = Arc::new(Shelf::default());
+        let (frames, others) = (Marked(0), Marked(1));
+        let looks = |frames, kind| Looks { frames, kind };
+        let painted = looks(&frames, Kind::Painted);
+        let pans = vec![(1, (vec![vec![Point::ONE]], Some(Point::new(3.0, 0.0))))];
+        let (mut first, stretches) = tracker(&shelf, &painted);
+        first.holds.add(Vec::new(), pans.clone());
+        first.note(&stretches, &[true], &painted);
+        let recalled = |looks: &Looks| {
+            let (mut tracker, stretches) = tracker(&shelf, looks);
+            let unknown = tracker.recall(&stretches);
+            (tracker.holds.within(SPAN).1, unknown)
+        };
+        assert_eq!(recalled(&painted), (pans, vec![false]));
+        for other in [looks(&frames, Kind::Lines), looks(&frames, Kind::Shaded), looks(&others, Kind::Painted)] {
+            assert_eq!(recalled(&other), (Vec::new(), vec![true]), "{:?}", other.kind);
+        }
+    }
+}

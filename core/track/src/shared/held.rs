@@ -23,9 +23,6 @@
 //! as H.264 at crf 35. So a frame is compared with the first one of its drawing, and slow movement does not add up.
 
 use super::features::{Features, Level, UNIT};
-use crate::contract::error::TrackError;
-use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
-use rototoon_base::scene::{FrameNumber, FrameSource, Progress};
 
 /// Radius of the windows in which a movement is fitted, in pixels of the level: 13 × 13 pixels.
 const WIDE: usize = 6;
@@ -36,8 +33,6 @@ const NOTHING: f32 = 0.012;
 /// A change of a colour that no noise makes in more than [`MANY`] pixels.
 const STRONG: f32 = 0.3;
 const MANY: usize = 400;
-/// How many pictures are looked at together.
-const AT_ONCE: usize = 4;
 /// Share of a window's energy that its movement must explain.
 const EXPLAINED: f64 = 0.5;
 /// Least movement of a window, in pixels of the level.
@@ -67,68 +62,6 @@ pub fn same_drawing(a: &Features, b: &Features) -> bool {
     }
     let difference = Difference::new(a, b);
     difference.strong <= MANY && difference.measure(LEAST_INK).is_noise()
-}
-
-/// The drawings of frames, which are in their order: the first and the last frame of each. They are those that the default tracker
-/// works on: a frame is compared with the one before it and with the first one of its drawing.
-///
-/// # Errors
-///
-/// The error of a picture that cannot be read, or the cancellation by `progress`.
-pub fn drawings(
-    frames: &dyn FrameSource,
-    numbers: impl IntoIterator<Item = FrameNumber>,
-    progress: &dyn Progress,
-) -> Result<Vec<[FrameNumber; 2]>, TrackError> {
-    let numbers: Vec<FrameNumber> = numbers.into_iter().collect();
-    let mut found: Vec<[FrameNumber; 2]> = Vec::new();
-    let mut known: Option<[Features; 2]> = None;
-    let look = |&frame: &FrameNumber| Ok((frame, Features::new(&*frames.picture(frame)?)));
-    for (k, batch) in numbers.chunks(AT_ONCE).enumerate() {
-        progress.report("Comparing drawings", (k * AT_ONCE) as f64 / numbers.len() as f64)?;
-        let looks = batch.par_iter().map(look).collect::<Vec<Result<_, TrackError>>>();
-        for seen in looks {
-            let (frame, picture) = seen?;
-            known = match (known, found.last_mut()) {
-                (Some([start, before]), Some([first, last]))
-                    if same_drawing(&before, &picture) && (first == last || same_drawing(&start, &picture)) =>
-                {
-                    *last = frame;
-                    Some([start, picture])
-                }
-                _ => {
-                    found.push([frame, frame]);
-                    Some([picture.clone(), picture])
-                }
-            };
-        }
-    }
-    Ok(found)
-}
-
-/// The frame from which [`drawings`] must be asked for, so that the drawing of `frame` begins where it does in a look at all frames from
-/// `earliest` on: the latest one up to `frame` that differs from the one before it. A picture that cannot be read ends the search.
-///
-/// # Errors
-///
-/// That of the picture of `frame`, or the cancellation by `progress`.
-pub fn began(
-    frames: &dyn FrameSource,
-    frame: FrameNumber,
-    earliest: FrameNumber,
-    progress: &dyn Progress,
-) -> Result<FrameNumber, TrackError> {
-    let (mut first, mut own) = (frame, Features::new(&*frames.picture(frame)?));
-    while first > earliest {
-        progress.report("Comparing drawings", 0.0)?;
-        let Ok(before) = frames.picture(first - 1) else { break };
-        let before = Features::new(&before);
-        if !same_drawing(&before, &own) {
-            break;
-        }
-        (first, own) = (first - 1, before);
-    }
-    Ok(first)
 }
 
 /// The difference of two pictures, as sums over the channels of products by pixel.

@@ -16,6 +16,7 @@
 //! - [`weakest`]: where the next key helps most
 
 pub mod budget;
+pub mod compared;
 pub mod cuts;
 pub mod drawings;
 pub mod edge_maps;
