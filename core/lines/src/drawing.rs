@@ -1,12 +1,13 @@
 //! A drawing: a picture, its ink as a graph, and its strokes.
 
 use crate::graph::Graph;
+use crate::ink::{self, Ink};
 use crate::outside::Outside;
 use crate::pairing::{Evidence, Pairing};
 use crate::solid::{Solids, met};
 use crate::stroke::{Options, Stroke, Style};
 use crate::strokes::Walked;
-use crate::{centre, economy, finish, ink, sketch, strokes};
+use crate::{centre, economy, finish, sketch, strokes};
 use rayon::prelude::{IntoParallelRefIterator, IntoParallelRefMutIterator, ParallelIterator};
 use rototoon_base::scene::{Colour, Raster};
 use std::sync::{Arc, OnceLock};
@@ -30,7 +31,12 @@ pub struct Drawing {
 impl Drawing {
     /// Finds the ink of a picture.
     pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
-        let mut ink = ink::measure(&picture, options);
+        let ink = ink::measure(&picture, options);
+        Self::of(picture, ink, options)
+    }
+
+    /// As [`Self::new`], from the ink that was measured in the picture with these options.
+    pub fn of(picture: Arc<Raster<Colour>>, mut ink: Ink, options: &Options) -> Self {
         let unit = picture.height().max(1) as f64 / 540.0;
         let mut graph = Graph::new(&ink);
         // First of all, since what is filled between sketched strokes was not drawn black.

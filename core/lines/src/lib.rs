@@ -87,7 +87,7 @@ mod strokes;
 mod thin;
 mod width;
 
-pub use carry::{Bound, Displaced, Key, Shown, between, bind, carry, carry_known, displaced, identify, is_same};
+pub use carry::{Bound, Displaced, Key, Shown, between, bind, bound, carry, carry_known, displaced, identify, is_same};
 pub use drawing::Drawing;
 pub use stroke::{Options, Stroke, Style, Tracked};
 

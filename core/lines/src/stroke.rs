@@ -2,9 +2,10 @@
 
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Colour;
+use serde::{Deserialize, Serialize};
 
 /// A traced stroke.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stroke {
     /// Points in pixels (x right, y down, a pixel's centre at +0.5).
     pub points: Vec<Point>,
@@ -23,7 +24,7 @@ pub struct Stroke {
 }
 
 /// What kind of drawing it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub enum Style {
     /// Each line is drawn once.
     Clean,
@@ -35,7 +36,7 @@ pub enum Style {
 }
 
 /// Options of tracing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Options {
     /// The kind of drawing.
     pub style: Style,
@@ -52,7 +53,7 @@ impl Default for Options {
 }
 
 /// A stroke with its number, which is the same on all drawings.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tracked {
     /// The number.
     pub track: usize,

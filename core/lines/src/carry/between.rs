@@ -80,6 +80,22 @@ pub fn between<E>(
     }
     let (drawing, came) = onward(count + 1, &before, forwards.last())?;
     drop(before);
+    bound(first, (forwards, came), look, (drawing, drawn), next)
+}
+
+/// The way back of [`between()`], for who has carried all strokes of the key `first` [forwards](carry): to the drawings between, and to the second key, on
+/// whose `drawing` `drawn` were drawn. It looks at the drawings between once.
+///
+/// # Errors
+///
+/// The first error of `look`.
+pub fn bound<E>(
+    first: &Key,
+    (forwards, came): (Vec<Vec<Tracked>>, Vec<Tracked>),
+    look: &mut dyn FnMut(usize) -> Result<Drawing, E>,
+    (drawing, drawn): (Drawing, Vec<Stroke>),
+    next: &mut usize,
+) -> Result<(Vec<Vec<Tracked>>, Key), E> {
     let known: BTreeSet<usize> = first.drawn.iter().map(|s| s.track).collect();
     let mut shown = Shown::default();
     shown.learn(&first.drawn, &first.drawing);
@@ -92,7 +108,7 @@ pub fn between<E>(
     let by_hand = first.by_hand.iter().copied().chain(drawn.iter().map(|s| s.track)).collect();
     let second = Key { drawing, drawn, beside, by_hand };
     let late = Late { next, numbers: BTreeSet::new(), lost: BTreeMap::new(), strokes: Vec::new() };
-    let found = Vec::with_capacity(count);
+    let found = Vec::with_capacity(forwards.len());
     let mut back = Backwards { known: &known, first: &first.drawing, second, found, shown, seen: Vec::new(), late };
     back.run(forwards, look)?;
     Ok((back.seen(), back.second))

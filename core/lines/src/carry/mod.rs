@@ -30,7 +30,7 @@ mod rivals;
 mod samples;
 mod shown;
 
-pub use between::{Key, between};
+pub use between::{Key, between, bound};
 pub use bind::{Bound, bind};
 pub use identify::identify;
 pub use register::{Displaced, displaced};

@@ -22,6 +22,7 @@ use crate::drawing::Drawing;
 use crate::stroke::{Stroke, Tracked};
 use rayon::prelude::{IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polyline};
+use serde::{Deserialize, Serialize};
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
@@ -109,7 +110,7 @@ struct Scene {
 }
 
 /// Places on the lines of one drawing, and where they are on another one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Displaced {
     /// Each place with its shift, in pixels.
     pub places: Vec<(Point, Point)>,
