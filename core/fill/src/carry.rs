@@ -15,12 +15,16 @@ use crate::leaks::{leaks, swallowed};
 use crate::lost;
 use crate::meet::{Table, meeting};
 use crate::opens::Opens;
-use crate::page::{Page, Paint};
+use crate::page::{Lines, Page, Paint};
 use crate::relax::relax;
 use crate::said::Said;
 use crate::shifts::Shifts;
 use rototoon_base::geometry::Point;
-use rototoon_lines::displaced;
+use rototoon_lines::{Displaced, displaced};
+use serde::{Deserialize, Serialize};
+
+/// Most places of a drawing's lines. Drawings have about 800, and one for each stroke beyond that.
+const MOST: usize = 1 << 20;
 
 /// A painted drawing from which colours come.
 pub struct Source<'a> {
@@ -30,13 +34,46 @@ pub struct Source<'a> {
     pub paint: &'a Paint,
     /// Whether an artist clicked there.
     pub own: bool,
+    /// Where its lines are on the drawing that is to be painted.
+    pub ways: &'a Ways,
+}
+
+/// Where the lines of two drawings are on each other. It depends on their pictures alone, not on paint or clicks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ways {
+    /// The lines of the painted drawing on the other one.
+    pub ahead: Displaced,
+    /// The lines of the other drawing on the painted one.
+    pub back: Displaced,
+}
+
+impl Ways {
+    /// Registers two drawings with each other.
+    pub fn new(from: &Page, to: &Page) -> Self {
+        // Before the tasks below: of two that wait for one value, one may be done by the thread that makes it.
+        let (from, to) = (from.lines(), to.lines());
+        let displaced = |from: &Lines, to: &Lines| displaced(&from.drawing, &from.strokes, &to.drawing);
+        let (ahead, back) = rayon::join(|| displaced(from, to), || displaced(to, from));
+        Self { ahead, back }
+    }
+
+    /// Whether these are places, as those that are found. What comes from a file may be anything.
+    pub fn fits(&self) -> bool {
+        let all = self.ahead.places.iter().chain(&self.back.places);
+        all.clone().count() <= 2 * MOST && all.into_iter().all(|(place, shift)| place.is_finite() && shift.is_finite())
+    }
+
+    /// Whether the drawings show the same thing.
+    pub fn related(&self) -> bool {
+        self.ahead.related || self.back.related
+    }
 }
 
 /// The colours of a page from painted ones, of which the last one gives the numbers of regions. Regions that are new
 /// get numbers from `next` on, which is raised. Regions that [leak](crate::leaks) are split before. `None` where no source
 /// shows the same thing.
 pub fn carry(sources: &[Source], page: &mut Page, next: &mut usize) -> Option<Paint> {
-    let shifts: Vec<Option<Both>> = sources.iter().map(|source| both(source.page, page)).collect();
+    let shifts: Vec<Option<Both>> = sources.iter().map(|source| both(source, page)).collect();
     for (source, both) in sources.iter().zip(&shifts) {
         if let Some(both) = both {
             page.close(&leaks(&source.page.layout, source.paint, &page.layout, &both.back));
@@ -105,15 +142,13 @@ struct Both {
 }
 
 /// The shifts between two pages; `None` if they do not show the same thing.
-fn both(from: &Page, to: &Page) -> Option<Both> {
-    let displaced = |from: &Page, to: &Page| displaced(&from.lines, &from.strokes, &to.lines);
-    let (ahead, back) = rayon::join(|| displaced(from, to), || displaced(to, from));
+fn both(source: &Source, to: &Page) -> Option<Both> {
     let shifts = |page: &Page, places: &[(Point, Point)]| {
         let picture = &page.regions.inside;
         Shifts::new(places, picture.width(), picture.height(), page.regions.unit)
     };
-    let related = ahead.related || back.related;
-    related.then(|| Both { ahead: shifts(from, &ahead.places), back: shifts(to, &back.places) })
+    let Source { page: from, ways, .. } = source;
+    ways.related().then(|| Both { ahead: shifts(from, &ways.ahead.places), back: shifts(to, &ways.back.places) })
 }
 
 fn said<'a>(source: &Source<'a>, page: &Page, shifts: &Both) -> Said<'a> {

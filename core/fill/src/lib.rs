@@ -41,7 +41,7 @@
 //!
 //! ```
 //! use rototoon_base::{geometry::Point, scene::Raster};
-//! use rototoon_fill::{Click, Page, Source, carry, fills};
+//! use rototoon_fill::{Click, Page, Source, Ways, carry, fills};
 //! use std::sync::Arc;
 //!
 //! let page = |shift: f64| {
@@ -61,7 +61,8 @@
 //! let (mut first, mut second, mut next) = (page(0.0), page(8.0), 0);
 //! let (paint, missed) = first.painted(&clicks, 3, &mut next);
 //! assert!(missed.is_empty());
-//! let carried = carry(&[Source { page: &first, paint: &paint, own: true }], &mut second, &mut next).unwrap();
+//! let ways = Ways::new(&first, &second);
+//! let carried = carry(&[Source { page: &first, paint: &paint, own: true, ways: &ways }], &mut second, &mut next).unwrap();
 //! let colours: Vec<usize> = fills(&second, &carried).iter().map(|fill| fill.colour).collect();
 //! assert_eq!(colours, [0, 1, 2], "the largest first");
 //! ```
@@ -88,8 +89,9 @@ mod said;
 pub mod shifts;
 pub mod thin;
 
-pub use carry::{Source, carry};
+pub use carry::{Source, Ways, carry};
 pub use change::{Change, changes};
 pub use outlines::{Fill, fills};
 pub use outside::Gap;
 pub use page::{Click, Page, Paint};
+pub use regions::Regions;

@@ -9,7 +9,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_lines::{Drawing, Options, Stroke, ink};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Least confidence with which paper is known.
 const SURE: f64 = 0.5;
@@ -20,10 +20,17 @@ const LEAKING: f64 = 0.3;
 
 /// A drawing with its regions.
 pub struct Page {
-    pub(crate) lines: Drawing,
-    pub(crate) strokes: Vec<Stroke>,
+    picture: Arc<Raster<Colour>>,
+    options: Options,
+    lines: OnceLock<Lines>,
     pub(crate) regions: Regions,
     pub(crate) layout: Layout,
+}
+
+/// The lines of a page, which are registered with those of others.
+pub(crate) struct Lines {
+    pub drawing: Drawing,
+    pub strokes: Vec<Stroke>,
 }
 
 /// A place in a region, in pixels, and the number of its colour in a palette: a click with the paint bucket.
@@ -57,12 +64,28 @@ pub struct Paint {
 }
 
 impl Page {
-    /// Finds the regions of a picture.
+    /// Finds the regions and the lines of a picture.
     pub fn new(picture: Arc<Raster<Colour>>, options: &Options) -> Self {
-        let regions = Regions::new(&ink::measure(&picture, options).mask);
+        let ink = ink::measure(&picture, options);
+        let regions = Regions::new(&ink.mask);
+        let lines = Lines::new(Drawing::of(picture.clone(), ink, options));
+        Self { lines: lines.into(), ..Self::known(picture, options, regions) }
+    }
+
+    /// A picture whose regions are known: those that [`Self::new`] finds with these options. Its lines are looked for when they are needed.
+    pub fn known(picture: Arc<Raster<Colour>>, options: &Options, regions: Regions) -> Self {
         let layout = Layout::new(&regions);
-        let lines = Drawing::new(picture, options);
-        Self { strokes: lines.strokes(), lines, regions, layout }
+        Self { picture, options: options.clone(), lines: OnceLock::new(), regions, layout }
+    }
+
+    /// Its regions.
+    pub fn own(&self) -> &Regions {
+        &self.regions
+    }
+
+    /// Its lines. They are not to be asked for by several tasks of one pool while nobody has them.
+    pub(crate) fn lines(&self) -> &Lines {
+        self.lines.get_or_init(|| Lines::new(Drawing::new(self.picture.clone(), &self.options)))
     }
 
     /// The region at a place in pixels, from 1: the one that it lies in, or to whose line it is near.
@@ -237,6 +260,12 @@ impl Page {
         if split {
             self.layout = Layout::new(&self.regions);
         }
+    }
+}
+
+impl Lines {
+    fn new(drawing: Drawing) -> Self {
+        Self { strokes: drawing.strokes(), drawing }
     }
 }
 

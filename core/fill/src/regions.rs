@@ -54,8 +54,38 @@ impl Regions {
         for label in inside.data_mut().iter_mut().filter(|label| **label > 0) {
             *label = numbers[*label as usize - 1];
         }
+        Self::of(inside, count as usize)
+    }
+
+    /// From the region of each pixel.
+    fn of(inside: Raster<u32>, count: usize) -> Self {
+        let unit = inside.height().max(1) as f64 / 540.0;
         let (nearest, steps) = spread(&inside);
-        Self { inside, nearest, steps, count: count as usize, unit }
+        Self { inside, nearest, steps, count, unit }
+    }
+
+    /// The regions in few numbers: row by row, the region of each run of pixels and its length.
+    pub fn runs(&self) -> Vec<(u32, u32)> {
+        let chunks = self.inside.data().chunk_by(|a, b| a == b);
+        chunks.filter_map(|run| Some((*run.first()?, u32::try_from(run.len()).ok()?))).collect()
+    }
+
+    /// The regions of a picture of `width` × `height` pixels from their [runs](Self::runs). `None` if these are not runs of regions that [`Self::new`] finds
+    /// in such a picture.
+    pub fn from_runs(runs: &[(u32, u32)], width: usize, height: usize) -> Option<Self> {
+        let all = width.checked_mul(height)?;
+        let mut data = Vec::new();
+        // They are numbered in the order of their first pixels.
+        let mut count = 0;
+        for &(region, length) in runs {
+            if length == 0 || length as usize > all - data.len() || region > count + 1 {
+                return None;
+            }
+            count = count.max(region);
+            data.resize(data.len() + length as usize, region);
+        }
+        (count as usize <= MOST).then_some(())?;
+        Some(Self::of(Raster::from_vec(width, height, data)?, count as usize))
     }
 
     /// The region at a place in pixels: the one that it lies in, or to whose line it is near.
@@ -240,6 +270,24 @@ mod tests {
         assert!(regions.nearest.data().iter().all(|&label| label > 0), "ink belongs to a region too");
         assert_eq!(regions.at(Point::new(-0.5, 0.5)), None, "outside of the picture");
         assert_eq!(regions.at(Point::new(f64::NAN, 0.5)), None);
+    }
+
+    #[test]
+    fn regions_come_back_from_their_runs_and_others_do_not() {
+        let regions = Regions::new(&drawn(&["....#...", "....#...", "#####...", "........"]));
+        let runs = regions.runs();
+        assert_eq!(runs[..3], [(1, 4), (0, 1), (2, 3)]);
+        let back = Regions::from_runs(&runs, 8, 4).unwrap();
+        assert_eq!((&back.inside, back.count, back.unit), (&regions.inside, regions.count, regions.unit));
+        assert_eq!((back.nearest, back.steps), (regions.nearest, regions.steps));
+        assert!(Regions::from_runs(&runs, 8, 5).is_none() && Regions::from_runs(&runs, 8, 3).is_none(), "another size");
+        let changed = |k: usize, run: (u32, u32)| {
+            let mut runs = runs.clone();
+            runs[k] = run;
+            Regions::from_runs(&runs, 8, 4).is_none()
+        };
+        assert!(changed(2, (3, 3)), "no region 2");
+        assert!(changed(0, (1, u32::MAX)) && changed(0, (1, 0)));
     }
 
     #[test]

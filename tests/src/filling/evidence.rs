@@ -8,7 +8,7 @@ use super::set::{Set, Tone};
 use super::truth::{Region, Truth};
 use anyhow::Result;
 use rototoon::fill::evidence::NAMES;
-use rototoon::fill::{Click, Page, Paint, Source, carry};
+use rototoon::fill::{Click, Page, Paint, Source, Ways, carry};
 use rototoon::geometry::Point;
 use rototoon::lines::Options;
 use rototoon::scene::FrameSource;
@@ -73,9 +73,10 @@ pub fn table(variant: &Variant) -> Result<String> {
     let mut text = format!("drawing,area,confidence,right,{}\n", NAMES.join(","));
     for k in 1..set.lines.len() {
         let mut page = Page::new(frames.picture(k as i32)?, &Options::default());
-        let mut sources = vec![Source { page: &key.0, paint: &key.1, own: true }];
+        let ways = [&key, &last].map(|own| Ways::new(&own.0, &page));
+        let mut sources = vec![Source { page: &key.0, paint: &key.1, own: true, ways: &ways[0] }];
         if !Arc::ptr_eq(&last.0, &key.0) {
-            sources.push(Source { page: &last.0, paint: &last.1, own: false });
+            sources.push(Source { page: &last.0, paint: &last.1, own: false, ways: &ways[1] });
         }
         let Some(paint) = carry(&sources, &mut page, &mut next) else { continue };
         for region in Truth::of(&set.drawing(k)?).regions {

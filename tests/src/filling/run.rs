@@ -71,7 +71,7 @@ pub fn measure(folder: &Path, name: &str, sheet: &Path) -> Result<Outcome> {
 fn filled(set: &Set, clicks: Vec<FillClick>) -> Result<Vec<FilledDrawing>> {
     let (mut document, folder) = document(set)?;
     document.set_fills(&[FillClicks { frame: 0, clicks }]);
-    fill(&mut document, folder.path(), None, &FillOptions::default(), &Silent)?;
+    fill(&mut document, folder.path(), None, &FillOptions::default(), None, &Silent)?;
     Ok(document.filled()?)
 }
 
