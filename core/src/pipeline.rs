@@ -18,6 +18,7 @@ mod fill;
 mod gaps;
 mod guesses;
 mod holds;
+mod keeping;
 pub mod memory;
 mod outdated;
 mod outside;
@@ -54,6 +55,7 @@ pub use fill::{
 };
 pub use gaps::held_gaps;
 pub use guesses::{guessed_translation, guesses};
+pub use keeping::Earlier;
 pub use outdated::outdated;
 pub use outside::outside;
 pub use paint::{Cels, undrawn};
@@ -68,7 +70,7 @@ pub use shapes::{Imported, ShapeFormat, import_shifted};
 pub use sheet::{Sheet, sheet};
 pub use sheet_marks::no_picture;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
-pub use trace::{TraceMemory, TraceOptions, trace, trace_drawings};
+pub use trace::{Kept, TraceMemory, TraceOptions, trace, trace_drawings};
 pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
 pub use untracked::untracked;
@@ -185,7 +187,7 @@ pub fn held(
     let frames = Sequence::keeping(footage, folder, 0)?;
     memory::to_follow(footage)?;
     gaps::none(&frames, footage.first..=footage.last)?;
-    Ok(crate::track::drawings(&frames, footage.first..=footage.last, progress)?)
+    Ok(crate::track::drawings(&frames, footage.first..=footage.last, None, progress)?)
 }
 
 /// The scene with only those corrections that have an effect. The document keeps the others, but no stage needs them.

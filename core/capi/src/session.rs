@@ -9,7 +9,7 @@ use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::cache::FileCache;
 use rototoon::pipeline::unchanged::Known;
-use rototoon::pipeline::{self, PipelineError, TraceMemory};
+use rototoon::pipeline::{self, Kept, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::{Document, Inputs};
@@ -239,8 +239,10 @@ impl Session {
         let traced = work::run(asked.threads, go_on, |progress: &dyn Progress| {
             // Another session that traces at the same time has the memory; this one does without.
             let mut memory = TRACED.try_lock().ok();
+            let cache = FileCache::of_user(None);
+            let kept = Kept { memory: memory.as_deref_mut(), cache: cache.as_ref().map(|cache| cache as _) };
             let (frames, options) = (asked.frames(), asked.options());
-            pipeline::trace(&mut document, &self.folder, frames, &options, memory.as_deref_mut(), progress).map_err(
+            pipeline::trace(&mut document, &self.folder, frames, &options, kept, progress).map_err(
                 |error| match error {
                     PipelineError::Cancelled(cancelled) => cancelled.into(),
                     other => Failure::error(other),
@@ -291,7 +293,9 @@ impl Session {
         let asked = filled::Asked::parse(options)?;
         let mut document = self.document.clone();
         let found = work::run(asked.threads, go_on, |progress: &dyn Progress| {
-            let report = pipeline::fill(&mut document, &self.folder, asked.frames(), &asked.options(), progress)
+            let cache = FileCache::of_user(None);
+            let cache = cache.as_ref().map(|cache| cache as _);
+            let report = pipeline::fill(&mut document, &self.folder, asked.frames(), &asked.options(), cache, progress)
                 .map_err(|error| match error {
                     PipelineError::Cancelled(cancelled) => cancelled.into(),
                     other => Failure::error(other),

@@ -5,9 +5,11 @@ use crate::tell;
 use clap::builder::{PathBufValueParser, PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use rototoon::lines::ink;
+use rototoon::pipeline::cache::FileCache;
 use rototoon::project::schema::MAX_FRAME_NUMBER;
 use rototoon::scene::parameters::{Kind, Parameter, Stage, find, of};
 use rototoon::scene::{Colour, FrameNumber};
+use std::ffi::OsString;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -128,6 +130,21 @@ pub fn without(arguments: &ArgMatches, ids: &[&str], with: &str) -> Result<(), F
             Err(Failure::Use(format!("found {found}: expected no such option {with}, where it changes nothing")))
         }
     }
+}
+
+/// `--cache FOLDER`. `help` says what is kept there.
+pub fn cache(help: &str) -> Arg {
+    let where_else = "By default it is that of the variable ROTOTOON_CACHE, or the user's folder for caches; \"none\" computes everything";
+    Arg::new("cache")
+        .long("cache")
+        .value_name("FOLDER")
+        .help(format!("{help}. {where_else}"))
+        .value_parser(value_parser!(OsString))
+}
+
+/// The cache that was asked for.
+pub fn cached(arguments: &ArgMatches) -> Option<FileCache> {
+    FileCache::of_user(arguments.get_one::<OsString>("cache").map(OsString::as_os_str))
 }
 
 /// `--frames A-B` of work on drawings.

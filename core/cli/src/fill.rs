@@ -29,6 +29,9 @@ pub fn command() -> Command {
                 .default_value("0")
                 .value_parser(arguments::within(0.0, 1.0)),
         )
+        .arg(arguments::cache(
+            "Folder where regions are kept, and where the lines of drawings are on each other. What has the same pictures as before comes from it",
+        ))
         .args(arguments::of_run())
 }
 
@@ -44,13 +47,17 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);
     let lines = Options { style: Style::Auto, sensitivity, leave_out: arguments::left_out(given) };
     let options = FillOptions { lines, confidence };
+    let cache = arguments::cached(given);
     let (document, report) = progress::run(given, from, |bar| {
-        let report =
-            pipeline::fill(&mut document, &home, frames, &options, bar).map_err(|error| Failure::of(error, from))?;
-        Ok((document, report))
+        let cache = cache.as_ref().map(|cache| cache as _);
+        let report = pipeline::fill(&mut document, &home, frames, &options, cache, bar);
+        Ok((document, report.map_err(|error| Failure::of(error, from))?))
     })?;
     project::say_gaps(&document, from)?;
     project::save(document, from, to)?;
+    if report.earlier.known > 0 {
+        line("note", &format!("{} steps have the pictures of an earlier run", report.earlier));
+    }
     report.lines().iter().for_each(|text| line("note", text));
     Ok(())
 }

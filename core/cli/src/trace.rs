@@ -5,7 +5,7 @@ use crate::{arguments, progress, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
-use rototoon::pipeline;
+use rototoon::pipeline::{self, Kept};
 use rototoon::project::Document;
 use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
@@ -56,6 +56,9 @@ pub fn command() -> Command {
                 .default_missing_value("on")
                 .value_parser(["on", "off"]),
         )
+        .arg(arguments::cache(
+            "Folder where strokes are kept. Steps from drawing to drawing with the same strokes and pictures as before come from it",
+        ))
         .args(arguments::of_run())
 }
 
@@ -78,12 +81,17 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let options = pipeline::TraceOptions { lines, keep_first: arguments::choice(given, "keep-first") == "on" };
-    let document = progress::run(given, from, |bar| {
-        pipeline::trace(&mut document, &home, frames, &options, None, bar).map_err(|error| Failure::of(error, from))?;
-        Ok(document)
+    let cache = arguments::cached(given);
+    let (document, earlier) = progress::run(given, from, |bar| {
+        let kept = Kept { cache: cache.as_ref().map(|cache| cache as _), memory: None };
+        let earlier = pipeline::trace(&mut document, &home, frames, &options, kept, bar);
+        Ok((document, earlier.map_err(|error| Failure::of(error, from))?))
     })?;
     project::say_gaps(&document, from)?;
     let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
+    if earlier.known > 0 {
+        line("note", &format!("{earlier} steps have the strokes and the pictures of an earlier run"));
+    }
     let told = pipeline::traced_lines(&traced, &document.scene.footage);
     project::save(document, from, to)?;
     told.iter().for_each(|text| line("note", text));
@@ -99,10 +107,11 @@ fn on_keys(
 ) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let home = project::home(&document, from);
+    let cache = arguments::cached(given);
     let (document, empty) = progress::run(given, from, |bar| {
-        let empty = pipeline::trace_drawings(&mut document, &home, keys, options, bar)
-            .map_err(|error| Failure::of(error, from))?;
-        Ok((document, empty))
+        let cache = cache.as_ref().map(|cache| cache as _);
+        let empty = pipeline::trace_drawings(&mut document, &home, keys, options, cache, bar);
+        Ok((document, empty.map_err(|error| Failure::of(error, from))?))
     })?;
     project::say_gaps(&document, from)?;
     project::save(document, from, to)?;

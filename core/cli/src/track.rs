@@ -3,14 +3,12 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
-use rototoon::pipeline::cache::FileCache;
 use rototoon::pipeline::{self, Report};
 use rototoon::project::output::check_writable;
 use rototoon::project::write_whole;
 use rototoon::scene::Scene;
 use rototoon::scene::parameters::Stage;
 use rototoon::track::{Ending, Preset, TrackEnd, TrackOptions, Tracking};
-use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -30,16 +28,9 @@ pub fn command() -> Command {
                 .help("Also writes what became of each part as JSON: frames sure, doubtful and lost")
                 .value_parser(value_parser!(PathBuf)),
         )
-        .arg(
-            Arg::new("cache")
-                .long("cache")
-                .value_name("FOLDER")
-                .help(
-                    "Folder where tracks are kept. Spans with the same keys and pictures as before come from it. By default it is that of the \
-                     variable ROTOTOON_CACHE, or the user's folder for caches; \"none\" computes everything",
-                )
-                .value_parser(value_parser!(OsString)),
-        )
+        .arg(arguments::cache(
+            "Folder where tracks are kept. Spans with the same keys and pictures as before come from it",
+        ))
         .args(arguments::of_stage(Stage::Track))
         .args(arguments::of_run())
 }
@@ -60,7 +51,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
-    let cache = FileCache::of_user(given.get_one::<OsString>("cache").map(OsString::as_os_str)).map(Arc::new);
+    let cache = arguments::cached(given).map(Arc::new);
     let (document, exchanges) = progress::run(given, from, |bar| {
         let tracking = match &cache {
             Some(cache) => pipeline::track_with_cache(&mut document, &home, &options, cache, bar),

@@ -9,7 +9,9 @@
 //!
 //! Limits: where something small is black, as a printed frame number, light pencil stays light.
 
-use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster};
+use super::keeping::CODE;
+use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Mark, Raster};
+use crate::track::cache::mark_of;
 use std::sync::Arc;
 
 /// Share of the pixels that may be farther from the paper than what is taken to be the darkest thing.
@@ -39,6 +41,10 @@ impl FrameSource for Contrast<'_> {
             [of(0), of(1), of(2)]
         };
         Ok(Arc::new(Raster::from_fn(picture.width(), picture.height(), |x, y| raised(picture.get(x, y)))))
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(self.0.mark(frame)?.and_then(|mark| mark_of(&(CODE, "contrast", mark))))
     }
 }
 

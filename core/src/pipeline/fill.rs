@@ -11,6 +11,7 @@
 //!
 //! A colour that becomes another one on some frames ([`crate::project::recolours`]) does so when regions are written. They are carried in the old one.
 
+mod pages;
 #[cfg(test)]
 mod tests;
 mod told;
@@ -18,21 +19,23 @@ mod told;
 pub use told::{FillReport, FilledFrame, LeakingClick, MissedClick, Recoloured, VanishedColour};
 
 use super::holds::{Holds, Stretch};
+use super::keeping::Keeping;
 use super::seen::Noted;
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::export::SvgFill;
-use crate::fill::{Change, Click, Gap, Page, Paint, Source, carry, changes, fills};
+use crate::fill::{Change, Click, Gap, Page, Paint, carry, changes, fills};
 use crate::lines::Options;
 use crate::pictures::Sequence;
 use crate::project::Document;
 use crate::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion, Hue};
 use crate::project::recolours::Recolours;
 use crate::project::seen::Made;
-use crate::scene::{FrameNumber, FrameSource, Progress};
+use crate::scene::{FrameNumber, Progress};
+use crate::track::Cache;
+use pages::{Known, Painted};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Share of a frame's regions that must be clicked so that it counts for frames before it.
 const WHOLE: f64 = 0.5;
@@ -52,6 +55,8 @@ pub struct FillOptions {
 /// the caller's rayon pool; the result does not depend on the pool. Painted regions of frames outside of `range` (the
 /// complete footage where it is `None`) stay.
 ///
+/// Regions and registrations that a `cache` knows are not found again. The result is the same.
+///
 /// # Errors
 ///
 /// [`PipelineError::Option`] for a range outside of the footage; [`PipelineError::Field`] for a document without clicks, for clicks outside of the
@@ -61,6 +66,7 @@ pub fn fill(
     folder: &Path,
     range: Option<RangeInclusive<FrameNumber>>,
     options: &FillOptions,
+    cache: Option<&dyn Cache>,
     progress: &dyn Progress,
 ) -> Result<FillReport, PipelineError> {
     let footage = &document.scene.footage;
@@ -75,6 +81,7 @@ pub fn fill(
         frames: &sequence,
         noted: &noted,
         holds: Holds::none(&noted),
+        keeping: Keeping { cache, frames: &noted, options: &options.lines },
         options,
         progress,
         palette: palette(&clicks),
@@ -189,14 +196,6 @@ fn palette(clicks: &[(usize, FillClicks)]) -> Vec<Hue> {
     palette
 }
 
-/// A painted drawing.
-#[derive(Clone)]
-struct Painted {
-    frame: FrameNumber,
-    page: Arc<Page>,
-    paint: Paint,
-}
-
 /// The clicks of a frame that paint nothing, by their places among its clicks.
 struct InVain {
     /// They lie on a line or outside of the picture.
@@ -214,6 +213,7 @@ struct Painting<'a> {
     noted: &'a Noted<'a>,
     /// Which frames hold a drawing.
     holds: Holds<'a>,
+    keeping: Keeping<'a>,
     options: &'a FillOptions,
     progress: &'a dyn Progress,
     palette: Vec<Hue>,
@@ -237,7 +237,7 @@ impl Painting<'_> {
         self.all = self.done + looked_at.clone().count() + clicks.len();
         let done = self.share();
         let search = Stretch { progress: self.progress, step: "Painting", from: done, to: done };
-        self.holds = Holds::of(self.noted, self.frames.footage().first, &looked_at, &search)?;
+        self.holds = Holds::of(self.noted, self.frames.footage().first, &looked_at, self.keeping.cache, &search)?;
         self.miss(&clicks[model], &missed);
         self.keep(&key);
         let before: Vec<_> = clicks[..model].iter().rev().collect();
@@ -297,7 +297,7 @@ impl Painting<'_> {
 
     /// A frame painted by its clicks alone, and the clicks that paint nothing.
     fn key(&mut self, clicks: &(usize, FillClicks)) -> Result<(Painted, InVain), PipelineError> {
-        let mut page = self.look(clicks.1.frame)?;
+        let (mut page, picture) = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
         let gaps = page.part_from_outside(&own);
@@ -306,7 +306,7 @@ impl Painting<'_> {
             page.leave_paper(&mut paint);
         }
         let in_vain = InVain { missed, ..in_vain(&page, &mut paint, &own, gaps) };
-        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, in_vain))
+        Ok((Painted { frame: clicks.1.frame, picture, page: page.into(), paint }, in_vain))
     }
 
     /// A colour becomes another one: the model drawing says so from here on, and what was not clicked on the last drawing has it too.
@@ -322,15 +322,16 @@ impl Painting<'_> {
 
     /// A frame painted by what is known beside it, and then by its own clicks, and the colours that these have changed.
     fn mended(&mut self, known: &Known, clicks: &(usize, FillClicks)) -> Result<(Painted, Vec<Change>), PipelineError> {
-        let mut page = self.look(clicks.1.frame)?;
+        let (mut page, picture) = self.look(clicks.1.frame)?;
         let own = self.clicks(&clicks.1);
         page.split(&own);
         let gaps = page.part_from_outside(&own);
         let numbers = self.next;
-        let mut carried = carry(&known.sources(), &mut page, &mut self.next);
+        let ways = self.ways(known, &page, picture);
+        let mut carried = carry(&known.sources(&ways), &mut page, &mut self.next);
         if carried.as_ref().is_some_and(|paint| page.part_from_paper(paint, &own)) {
             self.next = numbers;
-            carried = carry(&known.sources(), &mut page, &mut self.next);
+            carried = carry(&known.sources(&ways), &mut page, &mut self.next);
         }
         let before = carried.clone();
         let (mut paint, missed) = match carried {
@@ -345,7 +346,7 @@ impl Painting<'_> {
         self.vanish(clicks.1.frame, gone.filter(|colour| still.contains(colour)));
         let sources = [&known.key.paint, &known.last.paint];
         let changes = before.map_or_else(Vec::new, |before| changes(&page, &before, &paint, &sources));
-        Ok((Painted { frame: clicks.1.frame, page: page.into(), paint }, changes))
+        Ok((Painted { frame: clicks.1.frame, picture, page: page.into(), paint }, changes))
     }
 
     /// Paints frames one after the other, beginning beside the last painted one.
@@ -357,12 +358,13 @@ impl Painting<'_> {
                 self.keep(&known.last);
                 continue;
             }
-            let mut page = self.look(frame)?;
-            match carry(&known.sources(), &mut page, &mut self.next) {
+            let (mut page, picture) = self.look(frame)?;
+            let ways = self.ways(known, &page, picture);
+            match carry(&known.sources(&ways), &mut page, &mut self.next) {
                 Some(mut paint) => {
                     known.unsure.iter().for_each(|&colour| paint.doubt_returns(colour, &known.last.paint));
                     self.vanish(frame, paint.lacks(&known.last.paint).into_iter());
-                    known.last = Painted { frame, page: page.into(), paint };
+                    known.last = Painted { frame, picture, page: page.into(), paint };
                     self.keep(&known.last);
                 }
                 None => {
@@ -372,11 +374,6 @@ impl Painting<'_> {
             }
         }
         Ok(())
-    }
-
-    fn look(&mut self, frame: FrameNumber) -> Result<Page, PipelineError> {
-        self.progress()?;
-        Ok(Page::new(self.noted.picture(frame)?, &self.options.lines))
     }
 
     fn progress(&mut self) -> Result<(), PipelineError> {
@@ -461,28 +458,5 @@ impl Side {
     /// The frames between two, from the first one on.
     fn between(self, from: FrameNumber, to: FrameNumber) -> Box<dyn Iterator<Item = FrameNumber>> {
         if self.ahead { Box::new(from + 1..to) } else { Box::new((to + 1..from).rev()) }
-    }
-}
-
-/// The painted drawings from which the next one is painted.
-struct Known {
-    /// The model drawing, or a later one with as many clicks.
-    key: Painted,
-    /// The next one with as many clicks as a model drawing.
-    next: Option<Painted>,
-    /// The last painted one.
-    last: Painted,
-    /// Colours that have become others in part.
-    unsure: Vec<usize>,
-}
-
-impl Known {
-    /// The sources of the next drawing. The last one gives the numbers.
-    fn sources(&self) -> Vec<Source<'_>> {
-        let is_last = |painted: &Painted| Arc::ptr_eq(&painted.page, &self.last.page);
-        let others = [Some(&self.key), self.next.as_ref()];
-        let before = others.into_iter().flatten().filter(|painted| !is_last(painted)).map(|painted| (painted, true));
-        let all = before.chain([(&self.last, is_last(&self.key))]);
-        all.map(|(Painted { page, paint, .. }, own)| Source { page, paint, own }).collect()
     }
 }

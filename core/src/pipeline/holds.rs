@@ -10,8 +10,8 @@
 
 use super::PipelineError;
 use super::contrast::Contrast;
-use crate::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Progress, Raster};
-use crate::track;
+use crate::scene::{Cancelled, Colour, FrameError, FrameNumber, FrameSource, Mark, Progress, Raster};
+use crate::track::{self, Cache};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -43,7 +43,7 @@ pub(super) struct Holds<'a> {
 }
 
 impl<'a> Holds<'a> {
-    /// Finds the drawings of a range of frames. The footage begins on the frame `earliest`.
+    /// Finds the drawings of a range of frames. The footage begins on the frame `earliest`. A `cache` may know which frames show the same.
     ///
     /// # Errors
     ///
@@ -52,12 +52,13 @@ impl<'a> Holds<'a> {
         frames: &'a dyn FrameSource,
         earliest: FrameNumber,
         range: &RangeInclusive<FrameNumber>,
+        cache: Option<&dyn Cache>,
         progress: &dyn Progress,
     ) -> Result<Self, PipelineError> {
         let start = *range.start();
         let seen = Contrast(frames);
-        let from = track::began(&seen, start, earliest, progress)?;
-        let drawings = track::drawings(&seen, from..=*range.end(), progress)?;
+        let from = track::began(&seen, start, earliest, cache, progress)?;
+        let drawings = track::drawings(&seen, from..=*range.end(), cache, progress)?;
         let begun = drawings.iter().flat_map(|&[first, last]| (first + 1..=last).map(move |frame| (frame, first)));
         Ok(Self { frames, begun: begun.collect(), start })
     }
@@ -81,6 +82,10 @@ impl<'a> Holds<'a> {
 impl FrameSource for Holds<'_> {
     fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
         self.frames.picture(self.first(frame))
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        self.frames.mark(self.first(frame))
     }
 }
 
@@ -112,16 +117,16 @@ mod tests {
 
     #[test]
     fn a_new_line_of_light_pencil_is_a_new_drawing() {
-        let holds = Holds::of(&Pencil, 0, &(0..=4), &Silent).unwrap();
+        let holds = Holds::of(&Pencil, 0, &(0..=4), None, &Silent).unwrap();
         let first: Vec<FrameNumber> = (0..=4).map(|frame| holds.first(frame)).collect();
         assert_eq!(first, [0, 0, 2, 2, 4]);
     }
 
     #[test]
     fn where_a_drawing_begins_does_not_depend_on_the_range() {
-        let holds = Holds::of(&Pencil, 0, &(3..=4), &Silent).unwrap();
+        let holds = Holds::of(&Pencil, 0, &(3..=4), None, &Silent).unwrap();
         assert_eq!((holds.first(3), holds.first(4)), (2, 4));
         assert!(!holds.is_held(3), "no frame of the range is before it");
-        assert!(Holds::of(&Pencil, 0, &(2..=3), &Silent).unwrap().is_held(3));
+        assert!(Holds::of(&Pencil, 0, &(2..=3), None, &Silent).unwrap().is_held(3));
     }
 }

@@ -1,34 +1,34 @@
 //! Strokes of line drawings: traced on one frame, and the same strokes on the others.
 
+mod beside;
 mod kept;
-mod known;
 mod on_keys;
+mod steps;
 #[cfg(test)]
 mod tests;
 
-pub use kept::TraceMemory;
+pub use kept::{Kept, TraceMemory};
 pub use on_keys::trace_drawings;
 
 use super::holds::{Holds, SHARE, Stretch};
+use super::keeping::Earlier;
 use super::seen::Noted;
 use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
-use crate::lines::{Drawing, Key, Options, Shown, Stroke, Tracked, between, carry, is_same};
+use crate::lines::{Drawing, Options, Stroke, Tracked};
 use crate::project::Document;
 use crate::project::drawings::{Drawing as Drawn, DrawnStroke};
 use crate::project::seen::Made;
 use crate::project::traced::{TracedDrawing, TracedStroke};
 use crate::scene::{FrameNumber, FrameSource, Progress};
-use blake3::Hash;
+use beside::{Beside, beside, renamed};
 pub(super) use kept::of_picture;
 use kept::{Numbers, Span};
-use known::{Known, beside, renamed};
 use std::cmp::Ordering;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Options of tracing a film.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -58,7 +58,7 @@ pub struct TraceOptions {
 /// drawings: the strokes within have their numbers, as if all frames were traced at once. New strokes have numbers that no frame
 /// outside has.
 ///
-/// With a `memory`, spans between drawings that are the same as in an earlier run are taken from it. The result is the same.
+/// What an earlier run has `kept` is not found again: steps and spans whose strokes and pictures are as they were. The result is the same. Returns how much that was.
 ///
 /// # Errors
 ///
@@ -69,9 +69,9 @@ pub fn trace(
     folder: &Path,
     range: Option<RangeInclusive<FrameNumber>>,
     options: &TraceOptions,
-    memory: Option<&mut TraceMemory>,
+    kept: Kept<'_>,
     progress: &dyn Progress,
-) -> Result<(), PipelineError> {
+) -> Result<Earlier, PipelineError> {
     let footage = &document.scene.footage;
     let range = frames_of(footage, range)?;
     super::memory::to_trace(footage)?;
@@ -84,15 +84,15 @@ pub fn trace(
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
     let search = Stretch { progress, step: "Tracing", from: 0.0, to: SHARE };
     let noted = Noted::new(&sequence);
-    let holds = Holds::of(&noted, footage.first, &looked_at(&beside, &range), &search)?;
+    let holds = Holds::of(&noted, footage.first, &looked_at(&beside, &range), kept.cache, &search)?;
     let all = looks(&drawn, &beside, &range, &holds);
     let mut tracing = Tracing {
         frames: &holds,
         drawn,
         options: &options.lines,
         keep_first: options.keep_first || is_own(&earlier, *range.start()),
-        memory,
-        hashes: BTreeMap::new(),
+        kept,
+        earlier: Earlier::default(),
         progress,
         all,
         done: 0,
@@ -100,11 +100,12 @@ pub fn trace(
         unit: footage.height as f64 / 540.0,
     };
     let mut found = tracing.all(&range, &beside)?;
+    let earlier_run = tracing.earlier;
     found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
     found.sort_by_key(|drawing| drawing.frame);
     document.set_seen(Made::Traced, range, &noted.seen()).map_err(|error| wrong(&error))?;
     document.set_traced(&found);
-    Ok(())
+    Ok(earlier_run)
 }
 
 /// Tracing at work.
@@ -113,9 +114,9 @@ struct Tracing<'a> {
     drawn: Vec<&'a Drawn>,
     options: &'a Options,
     keep_first: bool,
-    memory: Option<&'a mut TraceMemory>,
-    /// The hashes of pictures that were looked at.
-    hashes: BTreeMap<FrameNumber, Hash>,
+    kept: Kept<'a>,
+    /// How much an earlier run has done.
+    earlier: Earlier,
     progress: &'a dyn Progress,
     all: usize,
     done: usize,
@@ -148,7 +149,7 @@ impl Tracing<'_> {
     fn all(
         &mut self,
         range: &RangeInclusive<FrameNumber>,
-        [before, behind]: &[Option<Known>; 2],
+        [before, behind]: &[Option<Beside>; 2],
     ) -> Result<Vec<TracedDrawing>, PipelineError> {
         let new = self.next;
         let mut drawn = std::mem::take(&mut self.drawn).into_iter();
@@ -186,9 +187,10 @@ impl Tracing<'_> {
     }
 
     /// The place of a drawing outside of the range.
-    fn known(&mut self, known: &Known) -> Place {
+    fn known(&mut self, known: &Beside) -> Place {
+        // What an earlier run had within the range alone is forgotten, and its numbers are new ones.
+        let mut by_hand: BTreeSet<usize> = known.by_hand.range(..self.next).copied().collect();
         let drawn = known.tracked(self.unit, &mut self.next);
-        let mut by_hand = known.by_hand.clone();
         if known.is_drawn() {
             by_hand.extend(drawn.iter().map(|stroke| stroke.track));
         }
@@ -196,7 +198,7 @@ impl Tracing<'_> {
     }
 
     /// Carries the strokes of a place up to a drawing behind the range, whose numbers those take that are not below `new`.
-    fn up_to(&mut self, place: Place, known: &Known, new: usize, found: &mut Found) -> Result<(), PipelineError> {
+    fn up_to(&mut self, place: Place, known: &Beside, new: usize, found: &mut Found) -> Result<(), PipelineError> {
         let own = known.tracked(self.unit, &mut self.next.clone());
         let there = self.between(place, known.frame, known.strokes(), found)?;
         let used = found.iter().flat_map(|(_, strokes)| strokes).map(|stroke| stroke.track).collect();
@@ -221,8 +223,8 @@ impl Tracing<'_> {
         } else {
             let key = self.key("first", &[], &[frame], &[])?;
             let numbers = Numbers::new([], self.next);
-            place.drawn = if let Some(span) = self.recall(key) {
-                self.done += 1;
+            place.drawn = if let Some(span) = self.recall(&key, 1, &numbers) {
+                self.pass(1);
                 span.drawings.iter().flat_map(|strokes| numbers.numbered(strokes)).collect()
             } else {
                 let ink = self.look(frame)?;
@@ -237,127 +239,6 @@ impl Tracing<'_> {
         Ok(place)
     }
 
-    /// Carries the strokes of a place from frame to frame. Two frames are in memory at a time.
-    fn outward(&mut self, place: &mut Place, frames: Vec<FrameNumber>, found: &mut Found) -> Result<(), PipelineError> {
-        if frames.is_empty() {
-            return Ok(());
-        }
-        let (all, next) = (place.all(), self.next);
-        let numbers = Numbers::new(&all, next);
-        let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).collect();
-        let by_hand = of_numbers(&all, &place.by_hand);
-        let key = self.key("outward", &[&numbers.ranked(&all), &numbers.ranked(&by_hand)], &looked, &[])?;
-        if let Some(span) = self.recall(key) {
-            self.next += span.new;
-            self.done += frames.len();
-            found.extend(frames.into_iter().zip(span.drawings.iter().map(|strokes| numbers.numbered(strokes))));
-            return Ok(());
-        }
-        let first = self.ink(place)?;
-        let mut shown = Shown::default();
-        shown.learn(&all, &first);
-        shown.learn_drawn(place.by_hand.iter().copied());
-        let mut before: Option<Drawing> = None;
-        let (mut last, mut seen) = (all.clone(), all);
-        let mut drawings = Vec::new();
-        for frame in frames {
-            let drawing = self.look(frame)?;
-            let from = before.as_ref().unwrap_or(&first);
-            let new = self.next;
-            last = carry(from, &last, &drawing, &mut self.next);
-            if is_same(from, &drawing) {
-                // It has the same strokes, also those of the artist that lie off the ink, and those that the artist did not draw.
-                seen.extend(last.iter().filter(|stroke| stroke.track >= new).cloned());
-            } else {
-                let own = shown.traced(&mut last, &drawing, &mut self.next);
-                seen = own.into_iter().map(|(_, stroke)| stroke).collect();
-            }
-            drawings.push(numbers.ranked(&seen));
-            found.push((frame, seen.clone()));
-            before = Some(drawing);
-        }
-        place.ink = Some(first);
-        let new = self.next - next;
-        self.keep(key, || Span { drawings, beside: Vec::new(), new });
-        Ok(())
-    }
-
-    /// Carries the strokes of a place to the next drawing. Returns the place there.
-    fn between(
-        &mut self,
-        mut place: Place,
-        to: FrameNumber,
-        drawn: Vec<Stroke>,
-        found: &mut Found,
-    ) -> Result<Place, PipelineError> {
-        let frames = self.drawings(place.frame + 1..to);
-        let numbers = Numbers::new(place.drawn.iter().chain(&place.beside), self.next);
-        let before = [numbers.ranked(&place.drawn), numbers.ranked(&place.beside)];
-        let looked: Vec<FrameNumber> = [place.frame].into_iter().chain(frames.iter().copied()).chain([to]).collect();
-        let by_hand = numbers.ranked(&of_numbers(&place.all(), &place.by_hand));
-        let key = self.key("between", &[&before[0], &before[1], &by_hand], &looked, &drawn)?;
-        if let Some(span) = self.recall(key) {
-            self.next += span.new;
-            self.done += 2 * frames.len() + 1;
-            let mut drawings = span.drawings.iter().map(|strokes| numbers.numbered(strokes));
-            found.extend(frames.into_iter().zip(&mut drawings));
-            let drawn = drawings.next().unwrap_or_default();
-            found.push((to, drawn.clone()));
-            let by_hand = place.by_hand.into_iter().chain(drawn.iter().map(|s| s.track)).collect();
-            return Ok(Place { frame: to, ink: None, drawn, beside: numbers.numbered(&span.beside), by_hand });
-        }
-        let drawing = self.ink(&mut place)?;
-        let first = Key { drawing, drawn: place.drawn, beside: place.beside, by_hand: place.by_hand };
-        let mut next = self.next;
-        let mut look = |place: usize| self.look(frames.get(place - 1).copied().unwrap_or(to));
-        let (drawings, second) = between(&first, frames.len(), &mut look, drawn, &mut next)?;
-        let new = next - self.next;
-        self.next = next;
-        let ranked = drawings.iter().chain([&second.drawn]).map(|strokes| numbers.ranked(strokes)).collect();
-        let beside = numbers.ranked(&second.beside);
-        self.keep(key, || Span { drawings: ranked, beside, new });
-        found.extend(frames.into_iter().zip(drawings));
-        found.push((to, second.drawn.clone()));
-        let Key { drawing, drawn, beside, by_hand } = second;
-        Ok(Place { frame: to, ink: Some(drawing), drawn, beside, by_hand })
-    }
-
-    /// The key of a span, if spans are kept.
-    fn key(
-        &mut self,
-        kind: &str,
-        strokes: &[&[Tracked]],
-        frames: &[FrameNumber],
-        drawn: &[Stroke],
-    ) -> Result<Option<Hash>, PipelineError> {
-        if self.memory.is_none() {
-            return Ok(None);
-        }
-        let mut key = kept::Key::new(kind, self.options);
-        strokes.iter().for_each(|strokes| {
-            key.tracked(strokes);
-        });
-        key.strokes(drawn);
-        for &frame in frames {
-            if !self.hashes.contains_key(&frame) {
-                self.progress.report("Tracing", self.share())?;
-                self.hashes.insert(frame, of_picture(&*self.frames.picture(frame)?));
-            }
-            key.picture(&self.hashes[&frame]);
-        }
-        Ok(Some(key.hash()))
-    }
-
-    fn recall(&mut self, key: Option<Hash>) -> Option<Arc<Span>> {
-        self.memory.as_mut()?.recall(&key?)
-    }
-
-    fn keep(&mut self, key: Option<Hash>, span: impl FnOnce() -> Span) {
-        if let (Some(memory), Some(key)) = (self.memory.as_mut(), key) {
-            memory.keep(key, span());
-        }
-    }
-
     /// The ink of a place, which is taken from it.
     fn ink(&mut self, place: &mut Place) -> Result<Drawing, PipelineError> {
         match place.ink.take() {
@@ -370,7 +251,15 @@ impl Tracing<'_> {
     fn look(&mut self, frame: FrameNumber) -> Result<Drawing, PipelineError> {
         self.progress.report("Tracing", self.share())?;
         self.done += 1;
+        self.earlier.all += 1;
         Ok(Drawing::new(self.frames.picture(frame)?, self.options))
+    }
+
+    /// So many looks at drawings are not needed, since an earlier run had them.
+    fn pass(&mut self, looks: usize) {
+        self.done += looks;
+        self.earlier.all += looks;
+        self.earlier.known += looks;
     }
 
     /// The share of the work that is done.
@@ -397,15 +286,15 @@ fn held(mut found: Found, end: FrameNumber) -> Found {
 
 /// The frames that are looked at for those of a range.
 fn looked_at(
-    [before, behind]: &[Option<Known>; 2],
+    [before, behind]: &[Option<Beside>; 2],
     range: &RangeInclusive<FrameNumber>,
 ) -> RangeInclusive<FrameNumber> {
-    let frame = |known: &Option<Known>| known.as_ref().map(|known| known.frame);
+    let frame = |known: &Option<Beside>| known.as_ref().map(|known| known.frame);
     frame(before).unwrap_or(*range.start())..=frame(behind).unwrap_or(*range.end())
 }
 
 /// How many pictures are looked at. Frames between two drawings are looked at twice, those that hold a drawing never.
-fn looks(drawn: &[&Drawn], beside: &[Option<Known>; 2], range: &RangeInclusive<FrameNumber>, holds: &Holds) -> usize {
+fn looks(drawn: &[&Drawn], beside: &[Option<Beside>; 2], range: &RangeInclusive<FrameNumber>, holds: &Holds) -> usize {
     let [before, behind] = beside;
     let begun = |frame: &FrameNumber| !holds.is_held(*frame);
     let outside = [before, behind].map(|known| known.as_ref().map(|known| known.frame));

@@ -1,4 +1,4 @@
-//! `track` with a cache: spans whose keys and pictures are as before come from it, and the document is the same.
+//! `track`, `trace` and `fill` with a cache: what has the same input as before comes from it, and the document is the same.
 
 use crate::cartoon::{Cartoon, command, draw, good, read, said, square, text};
 use serde_json::{Value, json};
@@ -65,4 +65,40 @@ fn the_variable_names_the_folder_and_a_bad_one_does_no_harm() {
         }
     }
     assert!(!run(&cache) && run(&cache));
+}
+
+/// Runs a command on the cartoon with this cache. Returns the document as it was written, and what it says of earlier steps.
+fn ran(words: &[&str], cartoon: &Cartoon, cache: &Path) -> (String, Option<String>) {
+    let (from, to) = (cartoon.path("project.json"), cartoon.path("made.json"));
+    let said = good(&[words, &[text(&from), "-o", text(&to), "--cache", text(cache)]].concat());
+    let line = said.lines().find(|line| line.contains("of an earlier run")).map(str::to_owned);
+    (fs::read_to_string(to).unwrap(), line)
+}
+
+#[test]
+fn drawings_that_are_as_before_are_not_traced_and_painted_again() {
+    let cartoon = Cartoon::new();
+    cartoon.document("project.json", json!([]));
+    let path = cartoon.path("project.json");
+    let mut document = read(&path);
+    document["fills"] = json!([{"frame": 0, "regions": [{"at": [3, 3], "colour": [0.5, 0.5, 1]}]}]);
+    fs::write(&path, document.to_string()).unwrap();
+    let traced = ["note: 7 of 7", "note: 4 of 7"]
+        .map(|count| format!("{count} steps have the strokes and the pictures of an earlier run"));
+    let painted =
+        ["note: 18 of 18", "note: 15 of 18"].map(|count| format!("{count} steps have the pictures of an earlier run"));
+    for (command, [all, some]) in [("trace", traced), ("fill", painted)] {
+        let cache = cartoon.path(command);
+        let run = || ran(&[command], &cartoon, &cache);
+        let bare = || ran(&[command], &cartoon, Path::new("none"));
+        let (first, line) = run();
+        assert_eq!((&first, line), (&bare().0, None), "{command}");
+        assert_eq!(run(), (first, Some(all)), "{command}");
+        // A picture is another one.
+        let before = fs::read(cartoon.frame(4)).unwrap();
+        draw(&cartoon.frame(4), 5, 64, 48);
+        let (changed, line) = run();
+        assert_eq!((&changed, line), (&bare().0, Some(some)), "{command}");
+        fs::write(cartoon.frame(4), before).unwrap();
+    }
 }

@@ -1,3 +1,4 @@
+mod cached;
 mod leaks;
 mod mending;
 mod opens;
@@ -65,7 +66,7 @@ impl Film {
     }
 
     fn fill(&mut self) -> Result<FillReport, PipelineError> {
-        fill(&mut self.document, self.folder.path(), None, &FillOptions::default(), &Silent)
+        fill(&mut self.document, self.folder.path(), None, &FillOptions::default(), None, &Silent)
     }
 
     /// The painted region at a place.
@@ -265,7 +266,7 @@ fn other_frames_and_the_document_stay() {
     let mut film = Film::new(4, moving).clicked(&[(0, &own_clicks())]);
     film.fill().unwrap();
     let before = film.document.filled().unwrap();
-    fill(&mut film.document, film.folder.path(), Some(2..=2), &FillOptions::default(), &Silent).unwrap();
+    fill(&mut film.document, film.folder.path(), Some(2..=2), &FillOptions::default(), None, &Silent).unwrap();
     assert_eq!(film.document.filled().unwrap(), before, "frame 2 is painted as before, and the others are kept");
 }
 
@@ -277,7 +278,7 @@ fn a_number_has_one_colour_on_kept_frames_too() {
     film.fill().unwrap();
     // Another colour on the first frame, but only the last one is painted again.
     let mut film = film.clicked(&[(0, &clicks(RED))]);
-    fill(&mut film.document, film.folder.path(), Some(3..=3), &FillOptions::default(), &Silent).unwrap();
+    fill(&mut film.document, film.folder.path(), Some(3..=3), &FillOptions::default(), None, &Silent).unwrap();
     let (kept, new) = (film.at(2, (72.0, 75.0)).unwrap(), film.at(3, (78.0, 75.0)).unwrap());
     assert_eq!((kept.colour, new.colour), (BLUE, RED));
     assert_ne!(kept.track, new.track);
@@ -309,7 +310,7 @@ fn errors_name_the_field() {
     let told: Vec<_> = report.missed.iter().map(ToString::to_string).collect();
     assert_eq!(told, ["frame 0, pixel (900.0, 5.0): the click fills[0].regions[1]"]);
     assert_eq!((report.missed[0].frame, report.missed[0].click), (0, 1));
-    let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &FillOptions::default(), &Silent);
+    let range = fill(&mut outside.document, outside.folder.path(), Some(0..=7), &FillOptions::default(), None, &Silent);
     assert_eq!(range.unwrap_err().to_string(), "frames: found 0 to 7, expected frames of the footage, 0 to 1");
 }
 
@@ -321,7 +322,7 @@ fn regions_that_are_not_sure_enough_stay_unpainted() {
     let guessed = film.at(1, (66.0, 75.0)).unwrap();
     assert!(guessed.confidence < 0.5, "{}", guessed.confidence);
     let options = FillOptions { confidence: 0.5, ..FillOptions::default() };
-    fill(&mut film.document, film.folder.path(), None, &options, &Silent).unwrap();
+    fill(&mut film.document, film.folder.path(), None, &options, None, &Silent).unwrap();
     assert_eq!(film.at(1, (66.0, 75.0)), None);
     assert_eq!(film.at(1, (31.0, 75.0)).unwrap().colour, RED);
 }
@@ -384,7 +385,7 @@ fn the_share_that_is_done_never_falls() {
         assert!(shares.len() > 5 && shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
     };
     rises(&mut |shares| {
-        fill(&mut film.document, film.folder.path(), None, &FillOptions::default(), shares).unwrap();
+        fill(&mut film.document, film.folder.path(), None, &FillOptions::default(), None, shares).unwrap();
     });
     rises(&mut |shares| {
         super::super::trace(
@@ -392,7 +393,7 @@ fn the_share_that_is_done_never_falls() {
             film.folder.path(),
             None,
             &super::super::TraceOptions::default(),
-            None,
+            super::super::Kept::default(),
             shares,
         )
         .unwrap();

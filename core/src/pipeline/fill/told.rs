@@ -1,5 +1,6 @@
 //! What painting tells: how many regions, which are in doubt, and what was in vain.
 
+use super::super::keeping::Earlier;
 use super::super::report::runs;
 use crate::fill::Gap;
 use crate::geometry::Point;
@@ -129,6 +130,8 @@ pub struct FillReport {
     pub vanished: Vec<VanishedColour>,
     /// By frame the number of its clicks.
     pub clicks: BTreeMap<FrameNumber, usize>,
+    /// How many drawings and registrations of drawings an earlier run has looked at.
+    pub earlier: Earlier,
 }
 
 impl FillReport {

@@ -1,14 +1,19 @@
 //! After an edit, tracing with a memory gives what tracing anew gives, and works only where the edit matters.
 
-use super::{Drawn, Holds, TraceMemory, Tracing, beside, is_own, looked_at};
+use super::super::keeping::Earlier;
+use super::super::keeping::tests::Store;
+use super::kept::Span;
+use super::{Drawn, Holds, Kept, TraceMemory, Tracing, beside, is_own, looked_at};
 use crate::geometry::Point;
-use crate::lines::Options;
+use crate::lines::{Options, Style};
+use crate::pictures::sequence::mark;
 use crate::project::drawings::DrawnStroke;
 use crate::project::traced::TracedDrawing;
-use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Raster, Silent};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::scene::{Colour, FrameError, FrameNumber, FrameSource, Mark, Raster, Silent};
+use crate::track::Cache;
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 const LAST: FrameNumber = 9;
 
@@ -22,6 +27,10 @@ impl FrameSource for Film {
         };
         let colour = |x: usize, y: usize| if ink(x as f64 + 0.5, y as f64 + 0.5) { [0.1; 3] } else { [1.0; 3] };
         Ok(Arc::new(Raster::from_fn(120, 90, colour)))
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(Some(mark(&*self.picture(frame)?)))
     }
 }
 
@@ -65,6 +74,10 @@ impl FrameSource for OnTwos {
         }
         Ok(Arc::new(picture))
     }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(Some(mark(&*self.picture(frame)?)))
+    }
 }
 
 /// Traces the frames of a range, beside what an earlier run traced outside of it.
@@ -80,7 +93,7 @@ fn within(
 /// Traces frames of the film on twos.
 fn on_twos(range: RangeInclusive<FrameNumber>, drawings: &[Drawn], earlier: &[TracedDrawing]) -> Vec<TracedDrawing> {
     let looked = looked_at(&beside(drawings, earlier, &range), &range);
-    let holds = Holds::of(&OnTwos, 0, &looked, &Silent).unwrap();
+    let holds = Holds::of(&OnTwos, 0, &looked, None, &Silent).unwrap();
     let found = of(&holds, range.clone(), drawings, earlier, None);
     let again = of(&holds, range, drawings, earlier, Some(&mut TraceMemory::default()));
     assert_eq!(found, again, "with a memory");
@@ -94,14 +107,24 @@ fn of(
     earlier: &[TracedDrawing],
     memory: Option<&mut TraceMemory>,
 ) -> Vec<TracedDrawing> {
+    kept(frames, range, (drawings, earlier), (&Options::default(), Kept { memory, cache: None })).0
+}
+
+/// Traces with these options and with what is kept. Returns how much an earlier run has done, too.
+fn kept(
+    frames: &Holds,
+    range: RangeInclusive<FrameNumber>,
+    (drawings, earlier): (&[Drawn], &[TracedDrawing]),
+    (options, kept): (&Options, Kept),
+) -> (Vec<TracedDrawing>, Earlier) {
     let used = earlier.iter().flat_map(|drawing| &drawing.strokes).map(|stroke| stroke.track + 1).max();
     let mut tracing = Tracing {
         frames,
         drawn: drawings.iter().filter(|drawing| range.contains(&drawing.frame)).collect(),
-        options: &Options::default(),
+        options,
         keep_first: is_own(earlier, *range.start()),
-        memory,
-        hashes: BTreeMap::new(),
+        kept,
+        earlier: Earlier::default(),
         progress: &Silent,
         all: 1,
         done: 0,
@@ -110,7 +133,7 @@ fn of(
     };
     let mut found = tracing.all(&range, &beside(drawings, earlier, &range)).unwrap();
     found.sort_by_key(|drawing| drawing.frame);
-    found
+    (found, tracing.earlier)
 }
 
 #[test]
@@ -211,18 +234,18 @@ fn an_edit_is_traced_again_only_where_it_matters() {
     let before = [drawn(1, 0.0), drawn(4, 0.0), drawn(7, 0.0)];
     let mut memory = TraceMemory::default();
     traced(&before, Some(&mut memory));
-    assert_eq!(memory.spans(), 4, "to the start, two between, to the end");
-    // The last drawing is edited: the span before it and the one behind it are new.
+    assert_eq!(memory.spans(), 11, "a step to the start, twice three steps on and the way back, two to the end");
+    // The last drawing is edited: the way back from it and the steps behind it are new.
     let after = [drawn(1, 0.0), drawn(4, 0.0), drawn(7, 1.0)];
     assert_eq!(traced(&after, Some(&mut memory)), traced(&after, None));
-    assert_eq!(memory.spans(), 6);
+    assert_eq!(memory.spans(), 14);
     // Undone, all is known.
     assert_eq!(traced(&before, Some(&mut memory)), traced(&before, None));
-    assert_eq!(memory.spans(), 6);
+    assert_eq!(memory.spans(), 14);
     // A further drawing cuts a span in two.
     let cut = [drawn(1, 0.0), drawn(4, 0.0), drawn(5, 0.0), drawn(7, 0.0)];
     assert_eq!(traced(&cut, Some(&mut memory)), traced(&cut, None));
-    assert!(memory.spans() <= 9, "at most two between and one behind: {}", memory.spans());
+    assert!(memory.spans() <= 20, "at most two ways back, two steps on and two behind: {}", memory.spans());
 }
 
 #[test]
@@ -286,4 +309,107 @@ fn an_edit_of_a_later_drawing_leaves_the_first_frame_as_it_was_traced() {
     // Nothing was traced before, so the drawing is the first one.
     let anew = within(0..=LAST, &[edited], &[], None);
     assert!(anew[0].strokes.iter().any(|stroke| stroke.confidence.is_some()));
+}
+
+/// The film with one picture that was drawn again: the bars are further.
+struct Redrawn(FrameNumber);
+
+impl FrameSource for Redrawn {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        Film.picture(if frame == self.0 { frame + 1 } else { frame })
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(Some(mark(&*self.picture(frame)?)))
+    }
+}
+
+/// Traces all frames with and without a cache, which must be the same. Returns how many steps were known.
+fn known(frames: &dyn FrameSource, drawings: &[Drawn], options: &Options, store: &Store) -> usize {
+    let holds = Holds::none(frames);
+    let run =
+        |cache: Option<&dyn Cache>| kept(&holds, 0..=LAST, (drawings, &[]), (options, Kept { memory: None, cache }));
+    let (found, earlier) = run(Some(store));
+    assert_eq!(found, run(None).0, "{} drawings", drawings.len());
+    earlier.known
+}
+
+#[test]
+fn steps_up_to_a_picture_that_was_drawn_again_come_from_the_cache() {
+    let (options, store) = (Options::default(), Store::default());
+    assert_eq!(known(&Film, &[], &options, &store), 0);
+    assert_eq!(known(&Film, &[], &options, &store), LAST as usize + 1);
+    assert_eq!(known(&Redrawn(6), &[], &options, &store), 6, "the first picture and the steps to frame 5");
+    assert_eq!(known(&Redrawn(0), &[], &options, &store), 0);
+    // The artist draws on a frame: the way forwards is known when he draws there again.
+    assert_eq!(known(&Film, &[drawn(2, 0.0), drawn(6, 0.0)], &options, &store), 0);
+    assert_eq!(
+        known(&Film, &[drawn(2, 0.0), drawn(6, 1.0)], &options, &store),
+        2 + 4,
+        "back to the start, and forwards"
+    );
+}
+
+#[test]
+fn other_options_find_nothing_in_the_cache() {
+    let store = Store::default();
+    known(&Film, &[], &Options::default(), &store);
+    let others = [
+        Options { sensitivity: 1.01, ..Options::default() },
+        Options { style: Style::Rough, ..Options::default() },
+        Options { style: Style::Clean, ..Options::default() },
+        Options { leave_out: vec![[0.6, 0.8, 1.0]], ..Options::default() },
+    ];
+    for options in others {
+        assert_eq!(known(&Film, &[], &options, &store), 0, "{options:?}");
+    }
+}
+
+#[test]
+fn entries_that_do_not_fit_count_as_missing() {
+    let (options, store) = (Options::default(), Store::default());
+    let drawings = [drawn(2, 0.0), drawn(6, 0.0)];
+    known(&Film, &drawings, &options, &store);
+    let sound = store.0.lock().unwrap().clone();
+    let damages: [fn(&mut Span); 5] = [
+        |span| span.drawings.push(Vec::new()),
+        |span| span.drawings.iter_mut().flatten().for_each(|own| own.track += 1000),
+        |span| span.drawings.iter_mut().flatten().for_each(|own| own.confidence = 2.0),
+        |span| span.drawings.iter_mut().flatten().for_each(|own| own.stroke.points[0].x = f64::NAN),
+        |span| span.new = usize::MAX,
+    ];
+    for damage in damages {
+        let damaged = sound.iter().map(|(mark, bytes)| {
+            let mut span: Span = postcard::from_bytes(bytes).unwrap();
+            damage(&mut span);
+            (*mark, postcard::to_stdvec(&span).unwrap())
+        });
+        *store.0.lock().unwrap() = damaged.collect();
+        assert_eq!(known(&Film, &drawings, &options, &store), 0);
+    }
+    store.0.lock().unwrap().values_mut().for_each(|bytes| bytes.truncate(9));
+    assert_eq!(known(&Film, &drawings, &options, &store), 0);
+}
+
+/// The film, whose files change as soon as they are read.
+struct Changing(Mutex<usize>);
+
+impl FrameSource for Changing {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        *self.0.lock().unwrap() += 1;
+        Film.picture(frame)
+    }
+
+    /// As of files that are other ones after they were read.
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        if *self.0.lock().unwrap() > 0 { Ok(None) } else { Film.mark(frame) }
+    }
+}
+
+#[test]
+fn of_pictures_that_change_nothing_is_kept() {
+    let store = Store::default();
+    let holds = Changing(Mutex::default());
+    known(&holds, &[], &Options::default(), &store);
+    assert!(store.0.lock().unwrap().is_empty());
 }

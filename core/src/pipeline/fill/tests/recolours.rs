@@ -118,7 +118,7 @@ fn frames_that_are_painted_alone_keep_numbers_apart() {
     recolour(&mut film.document, &wet(Some(1), None)).unwrap();
     film.fill().unwrap();
     let options = FillOptions::default();
-    fill(&mut film.document, film.folder.path(), Some(3..=3), &options, &Silent).unwrap();
+    fill(&mut film.document, film.folder.path(), Some(3..=3), &options, None, &Silent).unwrap();
     let mut hues: BTreeMap<usize, Hue> = BTreeMap::new();
     for region in film.document.filled().unwrap().iter().flat_map(|own| &own.regions) {
         assert!(hues.entry(region.track).or_insert_with(|| region.hue()).is_same(&region.hue()), "{region:?}");

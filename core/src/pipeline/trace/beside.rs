@@ -19,7 +19,7 @@ use std::ops::RangeInclusive;
 
 /// A drawing outside of the range whose strokes are known.
 #[derive(Clone, Default)]
-pub(super) struct Known<'a> {
+pub(super) struct Beside<'a> {
     /// Its frame.
     pub frame: FrameNumber,
     drawn: Option<&'a Drawn>,
@@ -28,7 +28,7 @@ pub(super) struct Known<'a> {
     pub by_hand: BTreeSet<usize>,
 }
 
-impl Known<'_> {
+impl Beside<'_> {
     /// Its strokes: those that the artist drew, or else the traced ones.
     pub fn strokes(&self) -> Vec<Stroke> {
         match (self.drawn, self.traced) {
@@ -59,18 +59,18 @@ pub(super) fn beside<'a>(
     drawn: &'a [Drawn],
     traced: &'a [TracedDrawing],
     range: &RangeInclusive<FrameNumber>,
-) -> [Option<Known<'a>>; 2] {
-    let mut all: BTreeMap<FrameNumber, Known> = BTreeMap::new();
+) -> [Option<Beside<'a>>; 2] {
+    let mut all: BTreeMap<FrameNumber, Beside> = BTreeMap::new();
     for drawing in drawn.iter().filter(|drawing| !drawing.strokes.is_empty()) {
         all.entry(drawing.frame).or_default().drawn = Some(drawing);
     }
     for drawing in traced.iter().filter(|drawing| !drawing.strokes.is_empty()) {
         all.entry(drawing.frame).or_default().traced = Some(drawing);
     }
-    let is_drawn = |known: &&Known| known.drawn.is_some();
+    let is_drawn = |known: &&Beside| known.drawn.is_some();
     let strokes = all.values().filter(is_drawn).filter_map(|known| known.traced).flat_map(|traced| &traced.strokes);
     let by_hand: BTreeSet<usize> = strokes.map(|stroke| stroke.track).collect();
-    let of = |(&frame, known): (&FrameNumber, &Known<'a>)| Known { frame, by_hand: by_hand.clone(), ..known.clone() };
+    let of = |(&frame, known): (&FrameNumber, &Beside<'a>)| Beside { frame, by_hand: by_hand.clone(), ..known.clone() };
     [all.range(..range.start()).next_back().map(of), all.range(range.end() + 1..).next().map(of)]
 }
 
