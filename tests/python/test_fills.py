@@ -76,6 +76,22 @@ def test_a_later_click_mends_what_follows(film):
     assert colours == [pytest.approx(BLUE)] * 2 + [pytest.approx(GREEN)] * 2
 
 
+def test_another_session_takes_what_one_has_found(film, tmp_path, monkeypatch):
+    cache = tmp_path / "cache"
+
+    def found(kept):
+        monkeypatch.setenv("ROTOTOON_CACHE", str(kept))
+        with opened(film) as session:
+            session.trace()
+            session.fill(CLICKS)
+            return session.document(), sorted(path.name for path in cache.rglob("*") if len(path.name) == 64)
+
+    document, entries = found(cache)
+    assert len(entries) > 4 * (LAST + 1)
+    assert found(cache) == (document, entries), "nothing is found anew"
+    assert found("none") == (document, entries)
+
+
 def test_doubts_and_what_was_not_painted_are_told(film):
     with opened(film) as session:
         # Nothing is known about the disc.
