@@ -52,7 +52,6 @@ fn shapes_that_redo_brings_back_do_not_take_a_newer_file_for_theirs() {
         effect.redo_told();
     }
     refuses_to_save(&host, &mut effect, &file);
-    clean(&host);
 }
 
 #[test]

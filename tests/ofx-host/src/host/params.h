@@ -203,7 +203,7 @@ public:
   OfxStatus get(OfxTime, std::string &v) override { v = value; return kOfxStatOK; }
   OfxStatus set(const char *v) override {
     std::string before = value;
-    history().add(change(before));
+    if (getCanUndo()) history().add(change(before));
     value = v;
     return kOfxStatOK;
   }
