@@ -126,7 +126,7 @@ mod tests {
             let own: Vec<Vec<f32>> =
                 (0..5).map(|i| (0..counts[i]).map(|c| cost(seed + 31 * i + c)).collect()).collect();
             // A tie may name the later point first.
-            let tie = |i: usize| if (i + seed) % 2 == 0 { (i, i + 1) } else { (i + 1, i) };
+            let tie = |i: usize| if (i + seed).is_multiple_of(2) { (i, i + 1) } else { (i + 1, i) };
             let ties: Vec<Tie> = (0..4).map(tie).map(|(a, b)| Tie { a, b, weight: 0.5 }).collect();
             let pair = |t: usize, c: usize, d: usize| cost(7 * seed + 97 * t + 13 * c + 5 * d);
             let sum = |chosen: &[usize]| -> f32 {
