@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0xee1edf35dfcc9756
+HEADER_HASH = 0x0a26911ce1590c2c
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0

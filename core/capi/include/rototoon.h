@@ -518,7 +518,8 @@ RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session
 // whose track changed are dropped.
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
-// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}]}`.
+// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}],
+// "unseen": [{"part", "frames": [frame]}]}`.
 //
 // - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 //   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
@@ -527,6 +528,8 @@ RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session
 //   there) or "left" (the part left the picture).
 // - `exchanges` has an entry for each two parts that look alike and may have changed places, with the frames on which nothing says which is which.
 //   `rototoon_outcomes` has words for it.
+// - `unseen` has an entry for each part that can probably not be seen on some frames, because nearer parts or the picture's edge hide it. Only a person
+//   knows; the document's `absent` says so.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,
