@@ -46,7 +46,7 @@ pub struct TraceOptions {
 /// the numbers 0, 1, …. Without drawings it begins on the first frame,
 /// which is traced. From there strokes are carried from frame to frame, forwards and backwards. Frames with a drawing keep
 /// that drawing's strokes; each gets the number of the carried stroke that it lies on, or a new one. Frames between two
-/// drawings are [bound to both](between()).
+/// drawings are [bound to both](crate::lines::bound).
 ///
 /// If an earlier run traced the first frame for itself, and the first drawing is a later one, the first frame stays as it was, and the frames between
 /// are bound to it and to the drawing. So an edit of one traced drawing costs the lines before it nothing. An earlier run is known by its

@@ -1,7 +1,7 @@
 //! Strokes from drawing to drawing, and what an earlier run knows of it.
 //!
 //! Outward from a drawing each *step* is from one picture to the next one. Between two drawings of the artist the way forwards is steps too, and the way
-//! back is one *span*: it needs what came from both sides. A step or a span that was [kept](super::kept) is taken from there, and its
+//! back is one *span*: it needs what came from both sides. A step or a span that was [kept] is taken from there, and its
 //! pictures are not looked at. Ink is looked for where a step is not known, so no more than three drawings are in memory.
 
 use super::super::PipelineError;
