@@ -87,7 +87,9 @@ def test_another_session_takes_what_one_has_found(film, tmp_path, monkeypatch):
             return session.document(), sorted(path.name for path in cache.rglob("*") if len(path.name) == 64)
 
     document, entries = found(cache)
-    assert len(entries) > 4 * (LAST + 1)
+    # Strokes and regions of each drawing; of neighbours whether they are one drawing, and where their lines are; the latter also of the
+    # clicked drawing and farther ones.
+    assert len(entries) == 2 * (LAST + 1) + 2 * LAST + (LAST - 1)
     assert found(cache) == (document, entries), "nothing is found anew"
     assert found("none") == (document, entries)
 
