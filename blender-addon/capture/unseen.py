@@ -1,7 +1,7 @@
 """Frames on which a part can probably not be seen, as the last Track found them. The parts keep them.
 
 Nearer parts or the edge of the picture hide it there, so its contour is a guess, and the part often needs none. Only the artist knows: it is a question, which
-`rototoon.hide_part` answers. Frames are pictures here, and scene frames in what is told.
+`rototoon.hide_unseen` answers. Frames are pictures here, and scene frames in what is told.
 
 Limits: documents do not hold them, so parts that come in from one, or from a farm, have none until they are tracked in Blender.
 """

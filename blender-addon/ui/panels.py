@@ -114,24 +114,24 @@ def _draw_ends(layout, settings) -> None:
             column.label(text=text, icon=icon)
 
 
-def _draw_exchanged(layout, ob) -> None:
-    """What may have changed places. A click on it goes there."""
+def _draw_question(layout, text: str, operator: str, **given):
+    """A question that Track asks, in lines. A click on it goes there. Returns the column for answers."""
+    column = layout.box().column(align=True)
+    for line, shown in enumerate(lines_of(text, 30)):
+        row = column.row()
+        row.alignment = "LEFT"
+        button = row.operator(operator, text=shown, icon="BLANK1" if line else "QUESTION", emboss=False)
+        for name, value in given.items():
+            setattr(button, name, value)
+    return column
+
+
+def _draw_questions(layout, ob) -> None:
+    """What may have changed places, and what can probably not be seen, with a button that says that it is so."""
     for number, pair in enumerate(exchanged.of(ob)):
-        column = layout.box().column(align=True)
-        for line, text in enumerate(lines_of(str(pair), 30)):
-            row = column.row()
-            row.alignment = "LEFT"
-            row.operator("rototoon.exchanged_parts", text=text, icon="BLANK1" if line else "QUESTION", emboss=False).pair = number
-
-
-def _draw_unseen(layout, ob) -> None:
-    """What can probably not be seen. A click on it goes there; the button below says that it is so."""
+        _draw_question(layout, str(pair), "rototoon.exchanged_parts", pair=number)
     for number, question in enumerate(unseen.questions(ob)):
-        column = layout.box().column(align=True)
-        for line, text in enumerate(lines_of(str(question), 30)):
-            row = column.row()
-            row.alignment = "LEFT"
-            row.operator("rototoon.unseen_part", text=text, icon="BLANK1" if line else "QUESTION", emboss=False).question = number
+        column = _draw_question(layout, str(question), "rototoon.unseen_part", question=number)
         column.operator("rototoon.hide_unseen", text="Hide It There", icon="GHOST_ENABLED").question = number
 
 
@@ -169,8 +169,7 @@ class ROTOTOON_PT_track(DrawingPanel, bpy.types.Panel):
             text, icon = live.status(context.object)
             layout.label(text=text, icon=icon)
         _draw_ends(layout, settings)
-        _draw_exchanged(layout, context.object)
-        _draw_unseen(layout, context.object)
+        _draw_questions(layout, context.object)
         column = layout.column(align=True)
         column.operator("rototoon.weakest_frame", icon="FRAME_NEXT")
         icon = "HIDE_OFF" if settings.show_confidence else "HIDE_ON"

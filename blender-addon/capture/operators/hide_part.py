@@ -37,8 +37,9 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
         picture = frame - ob.rototoon.frame_offset
         if not ob.rototoon.first <= picture <= ob.rototoon.last:
             raise Problem(f"Frame {frame} has no picture of the footage")
-        part = contours.read(ob).part(item.number)
-        need_open(ob, part)
+        found = contours.read(ob)
+        part = found.part(item.number)
+        need_open(ob, found, part)
         time = absence.time_of(item, picture)
         if frame in part.keys and time is None:
             raise Problem(f'"{item.name}" has a key on frame {frame}: remove the key first if the part is hidden here')
@@ -46,7 +47,7 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
             absence.show(item, *(time if self.frames == "STRETCH" else (picture, picture)))
             live.note(ob)
             return f'"{item.name}" is there again' + ("" if ob.rototoon.live else ": press Track")
-        return hide(self, ob, item, self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture])
+        return hide(self, ob, found, item, self._stretch(ob, part, frame) if self.frames == "STRETCH" else [picture])
 
     def _stretch(self, ob, part: contours.Part, frame: int) -> list[int]:
         """The pictures around a frame on which the part is lost."""
@@ -59,14 +60,13 @@ class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
         return [number - ob.rototoon.frame_offset for number in range(first, last + 1)]
 
 
-def need_open(ob, part: contours.Part) -> None:
+def need_open(ob, found: contours.Contours, part: contours.Part) -> None:
     """Raises `Problem` if the layer of a part's contours is locked."""
-    guard.need_open([gp.find_layer(ob, contours.read(ob).layer_names[part.layer])], hidden=True)
+    guard.need_open([gp.find_layer(ob, found.layer_names[part.layer])], hidden=True)
 
 
-def hide(operator: Guarded, ob, item, pictures: list[int]) -> str:
+def hide(operator: Guarded, ob, found: contours.Contours, item, pictures: list[int]) -> str:
     """Marks a part as hidden on some pictures, and removes its generated contours there. Returns what is to be told."""
-    found = contours.read(ob)
     part = found.part(item.number)
     absence.hide(item, pictures)
     frames = [picture + ob.rototoon.frame_offset for picture in pictures]

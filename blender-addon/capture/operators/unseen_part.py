@@ -56,12 +56,13 @@ class ROTOTOON_OT_hide_unseen(Asked, Guarded, OnContours, bpy.types.Operator):
         ob = context.object
         question = self.asked(ob)
         item = ob.rototoon.parts[question.index]
-        part = contours.read(ob).part(item.number)
-        need_open(ob, part)
+        found = contours.read(ob)
+        part = found.part(item.number)
+        need_open(ob, found, part)
         pictures = [frame - ob.rototoon.frame_offset for frame in question.frames if frame not in part.keys]
         if not pictures:
             raise Problem(f'"{item.name}" has keys on these frames: remove them first if the part is hidden there')
-        return hide(self, ob, item, pictures)
+        return hide(self, ob, found, item, pictures)
 
 
 CLASSES = (ROTOTOON_OT_unseen_part, ROTOTOON_OT_hide_unseen)
