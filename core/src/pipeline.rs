@@ -18,6 +18,7 @@ mod fill;
 mod gaps;
 mod guesses;
 mod holds;
+mod imported;
 mod keeping;
 pub mod memory;
 mod outdated;
@@ -55,6 +56,7 @@ pub use fill::{
 };
 pub use gaps::held_gaps;
 pub use guesses::{guessed_translation, guesses};
+pub use imported::Imported;
 pub use keeping::Earlier;
 pub use outdated::outdated;
 pub use outside::outside;
@@ -66,7 +68,7 @@ pub use report::{Counts, PartReport, Report, Together, Weakest};
 pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
 pub use seen::changed;
 pub use shapeless::nothing_for;
-pub use shapes::{Imported, ShapeFormat, import_shifted};
+pub use shapes::{ShapeFormat, import_shifted};
 pub use sheet::{Sheet, sheet};
 pub use sheet_marks::no_picture;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};
@@ -303,7 +305,7 @@ pub fn export_fusion(document: &Document, detail: impl Into<Detail>) -> String {
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
 /// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
-/// such a feather, and some lack characters of names. In SVG a stroke has one width along it. `extension`, in small letters, names the form.
+/// such a feather, and some lack characters of names. None has an order of parts that changes. In SVG a stroke has one width along it. `extension`, in small letters, names the form.
 pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String> {
     let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
     let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
@@ -318,8 +320,12 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
     let renamed = export::renamed(&document.scene, extension).into_iter().filter(|(own, _)| !bare(own));
     let renamed: Vec<String> = renamed.map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
     let names = (!renamed.is_empty()).then(|| format!("the file cannot have some names: {}", renamed.join(", ")));
+    let ordered = document.scene.parts.iter().filter(|part| part.depths.values().any(|depth| *depth != part.depth));
+    let names: Vec<String> = ordered.map(|part| format!("{:?}", part.name)).collect();
+    let order = (!names.is_empty())
+        .then(|| format!("the file has one order of parts for all frames, and {} changes its depth", names.join(", ")));
     let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
-    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(varying).collect();
+    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(order).chain(varying).collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
 

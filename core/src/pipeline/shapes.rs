@@ -1,10 +1,9 @@
 //! Shapes of other programs become keys of a document.
 
-use super::PipelineError;
-use super::excerpt;
-use super::report::runs;
+use super::imported::Imported;
+use super::{PipelineError, excerpt};
 use crate::export;
-use crate::import::{self, Change, ImportError, Shapes, Taken};
+use crate::import::{self, ImportError, Shapes};
 use crate::project::Document;
 use crate::scene::{Footage, FrameNumber, Scene};
 use std::collections::BTreeMap;
@@ -73,15 +72,6 @@ impl ShapeFormat {
     }
 }
 
-/// What an import did to a document.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Imported {
-    /// What became of each shape, farthest first.
-    pub taken: Vec<Taken>,
-    /// A line for each element that was left out or may be wrong.
-    pub warnings: Vec<String>,
-}
-
 /// Puts the shapes in the text of a file into the document as keys of parts. The frames of the file are those of the document plus
 /// `offset`; the frame in `format` is one of the document.
 ///
@@ -98,15 +88,12 @@ pub fn import_shifted(
     let mut found = shapes(&footage, text, format.shifted(offset))?;
     let own = own_names(&document.scene, format.extension());
     for shape in &mut found.shapes {
-        let keys = std::mem::take(&mut shape.keys).into_iter();
-        shape.keys = keys.map(|(frame, points)| (frame.saturating_sub(offset), points)).collect();
-        let frames = shape.absent.iter_mut().flatten().chain(&mut shape.held);
-        frames.for_each(|frame| *frame = frame.saturating_sub(offset));
+        shape.move_by(offset.saturating_neg());
         if let Some(name) = own.get(&shape.name) {
             shape.name.clone_from(name);
         }
     }
-    Ok(Imported { taken: import::into_scene(&mut document.scene, found.shapes), warnings: found.warnings })
+    Ok(Imported { merged: import::into_scene(&mut document.scene, found.shapes), warnings: found.warnings })
 }
 
 /// The parts whose name the format cannot write, by their names there.
@@ -123,38 +110,6 @@ fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, 
         ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
         ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
         ShapeFormat::Fusion { still } => import::fusion::fusion(text, footage, still),
-    }
-}
-
-impl Imported {
-    /// What an import did to parts that the document had, in words; nothing if all shapes are new parts.
-    pub fn told(&self) -> Option<String> {
-        let of = |is: &dyn Fn(&Change) -> bool| -> Vec<String> {
-            self.taken.iter().filter(|taken| is(&taken.change)).map(|taken| format!("{:?}", taken.name)).collect()
-        };
-        let changed: Vec<String> = self
-            .taken
-            .iter()
-            .filter_map(|taken| match &taken.change {
-                Change::Frames(frames) if frames.is_empty() => Some(format!("{:?} in its falloff", taken.name)),
-                Change::Frames(frames) => Some(format!("{:?} on {}", taken.name, runs(frames))),
-                _ => None,
-            })
-            .collect();
-        let group =
-            |what: &str, names: Vec<String>| (!names.is_empty()).then(|| format!("{what} {}", names.join(", ")));
-        let told: Vec<String> = [
-            group("changed", changed),
-            group("replaced with all keys and corrections", of(&|change| *change == Change::Replaced)),
-            group("as before", of(&|change| *change == Change::Nothing)),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        let new = of(&|change| *change == Change::New);
-        let new = group("new", if told.is_empty() { Vec::new() } else { new });
-        let told: Vec<String> = told.into_iter().chain(new).collect();
-        (!told.is_empty()).then(|| told.join("; "))
     }
 }
 

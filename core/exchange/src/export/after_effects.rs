@@ -5,7 +5,7 @@
 //! selected, which must have the footage's size. If no layer is selected, it makes a composition with a white solid. All of
 //! it is one step of undo.
 //!
-//! A mask has a key of its path on every frame on which the part has a contour. Tangents are relative to their vertices; a part with
+//! A mask has a key of its path on every frame on which the part has a contour. A part that has nothing but keys goes evenly from one to the next. Tangents are relative to their vertices; a part with
 //! straight sides has none. Coordinates are those of the layer: pixels with x right and y down from the upper
 //! left corner, as in the footage. Times are seconds from the layer's start. The nearest part is the uppermost mask.
 //! A feather is smooth in After Effects, or linear where the part's falloff is. Where a part has no contour, the opacity of its mask is 0; its keys hold.
@@ -144,7 +144,7 @@ pub fn after_effects(scene: &Scene, detail: impl Into<Detail>) -> String {
     let mut any = false;
     for index in super::nearest_first(scene) {
         let outlines = Outlines::new(&scene.parts[index], detail);
-        let keys = outlines.within(footage.first, footage.last);
+        let keys = outlines.shown_within(footage.first, footage.last);
         if keys.is_empty() {
             continue;
         }
@@ -215,7 +215,9 @@ mod tests {
 {\"name\": \"near\", \"closed\": false, \"color\": ";
         assert!(text.contains(wanted), "{text}");
         assert!(
-            text.contains("\"frames\": [\n  [1, [0.5, 2, 8, 2, 8.125, 0]],\n  [3, [0.3333, 2, 8, 2, 8.125, 0]]]}"),
+            text.contains(
+                "\"frames\": [\n  [1, [0.5, 2, 8, 2, 8.125, 0]],\n  [2, [0.4167, 2, 8, 2, 8.125, 0]],\n  [3, [0.3333, 2, 8, 2, 8.125, 0]]]}"
+            ),
             "{text}"
         );
         assert!(text.is_ascii());

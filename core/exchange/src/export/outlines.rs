@@ -94,6 +94,28 @@ impl<'a> Outlines<'a> {
         Some(line.into_iter().map(Knot::bare).collect())
     }
 
+    /// The contour that a frame shows, for formats that have one on every frame: a part that has nothing but keys goes evenly from one to the
+    /// next, as other programs move it, except where the artist hides it. `None` if the part is not there.
+    pub fn shown(&self, frame: FrameNumber) -> Option<Vec<Knot>> {
+        if let Some(own) = self.at(frame) {
+            return Some(own);
+        }
+        if !self.part.tracks.is_empty() || self.part.is_absent(frame) {
+            return None;
+        }
+        let key = |(_, points): &(FrameNumber, &Vec<Point>)| points.len() == self.points;
+        let before = self.part.keys.range(..frame).next_back().map(|(at, points)| (*at, points)).filter(key);
+        let after = self.part.keys.range(frame..).next().map(|(at, points)| (*at, points)).filter(key);
+        let ((from, a), (to, b)) = (before?, after?);
+        let share = (f64::from(frame) - f64::from(from)) / (f64::from(to) - f64::from(from));
+        Some(a.iter().zip(b).map(|(a, b)| Knot::bare(a.lerp(*b, share))).collect())
+    }
+
+    /// The frames from `first` to `last` that show a contour, each with it.
+    pub fn shown_within(&self, first: FrameNumber, last: FrameNumber) -> Keys {
+        (first..=last).filter_map(|frame| Some((frame, self.shown(frame)?))).collect()
+    }
+
     /// The frames from `first` to `last` on which there is a contour, each with its contour.
     pub fn within(&self, first: FrameNumber, last: FrameNumber) -> Keys {
         (first..=last).filter_map(|frame| Some((frame, self.at(frame)?))).collect()

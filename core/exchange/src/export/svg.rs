@@ -2,8 +2,8 @@
 //!
 //! Each part is a `path` with a `title` and a SMIL animation of its `d` over the footage. The animation loops, and
 //! browsers play it directly. SMIL can interpolate only paths with the same number of points, so every frame gets the
-//! same number ([`super::outlines`]), and curves on all frames or on none. A part is hidden on frames without a contour; one that
-//! has nothing but keys says so in an attribute, since an import would take it for absent between them. The root says which frames of the document it shows. Parts are drawn in the order of
+//! same number ([`super::outlines`]), and curves on all frames or on none. A part is hidden on frames without a contour. One that
+//! has nothing but keys goes evenly from one to the next, as in other formats, and an attribute names the frames of its keys for an import. The root says which frames of the document it shows. Parts are drawn in the order of
 //! depth, far ones first.
 //!
 //! Painted regions, contours and lines are groups below the root, in the order in which they lie: [`PAINT`], [`CONTOURS`] and [`LINES`]. Programs for drawing show such groups as layers of
@@ -16,7 +16,7 @@ use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polyline::resample;
 use rototoon_base::scene::palette;
-use rototoon_base::scene::{Colour, FrameNumber, Scene};
+use rototoon_base::scene::{Colour, Footage, FrameNumber, Part, Scene};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -77,8 +77,8 @@ pub const LINES: [&str; 2] = ["lines", "Lines"];
 /// The namespace of Inkscape's attributes.
 const INKSCAPE: &str = "http://www.inkscape.org/namespaces/inkscape";
 
-/// The attribute of a part that has nothing but keys. It is drawn on these frames only, but it is not hidden on others.
-const KEYS_ONLY: &str = "data-keys=\"only\"";
+/// The attribute of a part that has nothing but keys: their frames.
+const KEYS: &str = "data-keys";
 
 /// A stroke on several frames.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -170,7 +170,7 @@ fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: 
     let part = &scene.parts[index];
     let outlines = Outlines::new(part, options.detail());
     let shape = |frame: FrameNumber| {
-        let knots = outlines.at(frame)?;
+        let knots = outlines.shown(frame)?;
         if outlines.bent() {
             return Some(bent(&knots, part.closed));
         }
@@ -178,10 +178,17 @@ fn part(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: 
     };
     let colour = palette::hex(part.shown_colour(index));
     let fill = if part.closed { colour.as_str() } else { "none" };
-    let keys = if part.tracks.is_empty() && part.keys.len() > 1 { format!(" {KEYS_ONLY}") } else { String::new() };
+    let keys = keys_alone(part, &scene.footage);
     let style =
         format!("id=\"part-{index}\"{keys} fill=\"{fill}\" fill-opacity=\"{FILL_OPACITY}\" stroke=\"{colour}\"");
     path(out, scene, &style, (&escaped(name), &BTreeMap::new(), ""), options.motion, shape);
+}
+
+/// The attribute with the frames of the keys of a part that has nothing else; none for other parts.
+fn keys_alone(part: &Part, footage: &Footage) -> String {
+    let frames = part.keys.range(footage.first..=footage.last).map(|(frame, _)| frame.to_string());
+    let frames: Vec<String> = frames.collect();
+    if part.tracks.is_empty() && frames.len() > 1 { format!(" {KEYS}=\"{}\"", frames.join(" ")) } else { String::new() }
 }
 
 fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {

@@ -45,15 +45,8 @@ pub(super) fn hide(keys: &mut Keys, times: &[[f64; 2]], footage: &Footage) -> Op
     Some(hidden)
 }
 
-/// The frames of the footage on which a shape is shown that is hidden in these times.
-pub(super) fn shown(times: &[[f64; 2]], footage: &Footage) -> Vec<FrameNumber> {
-    let hidden = joined(times, footage);
-    let is_hidden = |frame: &FrameNumber| hidden.iter().any(|[first, last]| (first..=last).contains(&frame));
-    (footage.first..=footage.last).filter(|frame| !is_hidden(frame)).collect()
-}
-
 /// The whole frames of times, in order, within the footage. Those that touch are one.
-fn joined(times: &[[f64; 2]], footage: &Footage) -> Vec<[FrameNumber; 2]> {
+pub(super) fn joined(times: &[[f64; 2]], footage: &Footage) -> Vec<[FrameNumber; 2]> {
     let (first, last) = (f64::from(footage.first), f64::from(footage.last));
     let whole = times.iter().map(|[from, to]| [from.ceil().max(first), to.floor().min(last)]);
     let mut whole: Vec<[f64; 2]> = whole.filter(|[from, to]| from <= to).collect();

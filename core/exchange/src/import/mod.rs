@@ -13,6 +13,7 @@
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
+//! - `extent`: of which frames a file speaks
 //! - `hidden`: frames on which a shape is not shown
 //! - `merge`: shapes into a scene, without a change where nothing was changed
 //! - `range`: keys beyond the footage
@@ -22,6 +23,7 @@
 
 pub mod bvh;
 mod channel;
+mod extent;
 pub mod fusion;
 mod hidden;
 mod limits;
@@ -42,8 +44,9 @@ mod svg_outline;
 mod svg_style;
 mod svg_view;
 
+pub use extent::Extent;
 pub use limits::too_large;
-pub use merge::{Change, Taken, into_scene};
+pub use merge::{Change, Merged, Taken, into_scene};
 pub use problem::{ImportError, Place};
 
 use rototoon_base::geometry::Point;
@@ -63,8 +66,8 @@ pub struct Shape {
     pub absent: Vec<[FrameNumber; 2]>,
     /// How its border falls off where it is soft, if the file says so.
     pub falloff: Option<Falloff>,
-    /// The frames on which a shape with one key stands still in the file; none if the file is no film.
-    pub held: Vec<FrameNumber>,
+    /// Of which frames the file speaks.
+    pub extent: Extent,
 }
 
 impl Shape {
@@ -75,11 +78,21 @@ impl Shape {
         hidden: &[[f64; 2]],
         footage: &Footage,
     ) -> (Self, Option<String>) {
-        let held = if keys.len() == 1 { hidden::shown(hidden, footage) } else { Vec::new() };
+        let ends = [keys.first_key_value(), keys.last_key_value()];
+        let ends = ends.map(|key| key.map_or(footage.first, |(frame, _)| *frame));
+        let extent = Extent::new(ends, hidden, footage);
         let absent = hidden::hide(&mut keys, hidden, footage);
         let never =
             absent.is_none().then(|| format!("the file shows the shape {name:?} on no frame; its keys are taken"));
-        (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: None, held }, never)
+        (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: None, extent }, never)
+    }
+
+    /// Moves the shape in time by a number of frames.
+    pub fn move_by(&mut self, frames: FrameNumber) {
+        let keys = std::mem::take(&mut self.keys).into_iter();
+        self.keys = keys.map(|(frame, points)| (frame.saturating_add(frames), points)).collect();
+        self.absent.iter_mut().flatten().for_each(|frame| *frame = frame.saturating_add(frames));
+        self.extent.move_by(frames);
     }
 }
 
@@ -105,7 +118,7 @@ mod tests {
             keys: BTreeMap::from([(2, vec![Point::ONE, Point::X, Point::Y])]),
             absent: Vec::new(),
             falloff: None,
-            held: Vec::new(),
+            extent: Extent::default(),
         };
         let old = Part {
             name: "arm".into(),

@@ -38,6 +38,8 @@ const NOT_DRAWN: [&str; 9] =
 /// Attributes of the root of an export: the first and the last frame of the document that it shows.
 const FIRST: &str = "data-first";
 const LAST: &str = "data-last";
+/// The attribute of a part of an export that has nothing but keys: their frames.
+const KEYS: &str = "data-keys";
 /// Elements that contain others.
 const GROUPS: [&str; 4] = ["g", "a", "svg", "switch"];
 /// Elements that have an outline.
@@ -212,9 +214,7 @@ impl<'a> Reader<'a> {
             }
             None => vec![Keyed { frame: self.still, text: text.to_owned(), toward: None }],
         };
-        // A part that was exported before it was tracked is there between its keys.
-        let keys_only = node.attribute("data-keys") == Some("only");
-        let hidden = if keys_only { Vec::new() } else { hidden_times(node, self.footage) };
+        let (keys, hidden) = (of_artist(node, keys), hidden_times(node, self.footage));
         let frames = keys.iter().map(|key| Ok((key.frame, self.placed(node, key, transform)?)));
         let frames = frames.collect::<Result<Vec<_>, ImportError>>()?;
         let Some((first, start)) = frames.first() else { return Ok(()) };
@@ -237,8 +237,8 @@ impl<'a> Reader<'a> {
             let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
             never.into_iter().for_each(|never| self.left_out.push(node, never));
             // Another drawing is of one frame; it does not say that the part stands still.
-            let held = if self.is_film { shape.held } else { Vec::new() };
-            self.shapes.push(Shape { held, ..shape });
+            let extent = if self.is_film { shape.extent } else { shape.extent.of_drawing() };
+            self.shapes.push(Shape { extent, ..shape });
         }
         Ok(())
     }
@@ -262,6 +262,15 @@ impl<'a> Reader<'a> {
         }
         Ok(own)
     }
+}
+
+/// The keys of a shape without those that an export has put between the keys of a part. Its attribute names the frames of the artist's own.
+fn of_artist(node: Node, keys: Vec<Keyed>) -> Vec<Keyed> {
+    let listed = node.attribute(KEYS).unwrap_or("");
+    let listed: Vec<FrameNumber> = listed.split_ascii_whitespace().filter_map(|frame| frame.parse().ok()).collect();
+    let own = |key: &Keyed| listed.contains(&key.frame);
+    // A form that is held has no key of its own on the frames between.
+    if listed.is_empty() || !keys.iter().any(own) { keys } else { keys.into_iter().filter(own).collect() }
 }
 
 /// What an export writes beside the contours of parts.

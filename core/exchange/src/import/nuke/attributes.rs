@@ -3,6 +3,10 @@
 //! A list `a` has names, each followed by its value. Blending modes (`bm`) are numbers: 0 lays a shape over those below, 4 takes
 //! the greater of both, 5 keeps what is inside of both, 12 subtracts, 13 takes the difference.
 //!
+//! The lifetime has a kind (`ltt`), a first frame (`ltn`) and a last one (`ltm`). The kinds are numbered in the order of Nuke's menu: all frames, start to
+//! frame, single frame, frame to end, frame range. Public scripts set 0 for the first and 4 for the last; the numbers between follow from the
+//! order.
+//!
 //! Source: M. Borgo's exporter for Silhouette (NukeFXSExporter) names these modes; the other numbers are not public.
 
 use super::number::{channel, number};
@@ -32,4 +36,19 @@ pub(super) fn lost(text: &str, item: &Item) -> Option<String> {
     };
     let told: Vec<String> = inverted.into_iter().chain(blended).collect();
     (!told.is_empty()).then(|| told.join(" and "))
+}
+
+/// The times in which a shape is not shown because its lifetime has not begun or is over.
+pub(super) fn outside_of_lifetime(text: &str, item: &Item) -> Vec<[f64; 2]> {
+    let still = |name: &str| attribute(item, name).and_then(|value| number(text, value, "a").ok());
+    let (first, last) = (still("ltn"), still("ltm"));
+    let (first, last) = match still("ltt") {
+        Some(1.0) => (None, last),
+        Some(2.0) => (first, first),
+        Some(3.0) => (first, None),
+        Some(4.0) => (first, last),
+        _ => return Vec::new(),
+    };
+    let before = first.map(|first| [f64::NEG_INFINITY, first - 1.0]);
+    before.into_iter().chain(last.map(|last| [last + 1.0, f64::INFINITY])).collect()
 }

@@ -13,8 +13,8 @@
 //! - Layers and shapes may have a `transform`, applied here; a shape then also has keys where its transformation has.
 //! - Left out with a warning that names the shape, since its place or form would be wrong: open B-splines (how they end is not
 //!   public), weights other than 1, expressions, and what `transform` leaves out.
-//! - The rate at which a feather falls off is read. A shape is hidden where its opacity (`opc`) is 0 and outside of its lifetime,
-//!   if that is a range of frames, and where it is invisible (`vis`). One that always is, or whose layer is, is left out.
+//! - The rate at which a feather falls off is read. A shape is hidden where its opacity (`opc`) is 0, outside of its lifetime
+//!   (`attributes`), and where it is invisible (`vis`). One that always is, or whose layer is, is left out.
 //! - Shapes that are inverted (`inv`) or not laid over those below (`bm`) come in as they are drawn, with a warning. Other opacities, those of layers, feather and brush strokes are ignored.
 //!
 //! Source: Foundry, Nuke Developer Kit, "Roto serialisation format"; scripts of Nuke 7 to 13 in public repositories.
@@ -46,8 +46,6 @@ pub(super) use words::{place, wrong};
 const RELATIVE_HANDLES: u32 = 8192;
 /// Flag of a curve: the last point does not join the first.
 const OPEN: u32 = 32;
-/// Type of lifetime: a range of frames.
-const FRAME_RANGE: f64 = 4.0;
 
 /// Reads the shapes of a script for footage. Shapes that are not animated get their key on frame `still`.
 ///
@@ -220,10 +218,7 @@ impl Reader<'_> {
         // A visibility changes at once.
         let visible = attribute(item, "vis").and_then(|value| channel(self.text, value, "a").ok());
         found.extend(visible.into_iter().flat_map(|visible| visible.zeros(true)));
-        let still = |name: &str| attribute(item, name).and_then(|value| number(self.text, value, "a").ok());
-        if let (Some(FRAME_RANGE), Some(first), Some(last)) = (still("ltt"), still("ltn"), still("ltm")) {
-            found.extend([[f64::NEG_INFINITY, first - 1.0], [last + 1.0, f64::INFINITY]]);
-        }
+        found.extend(attributes::outside_of_lifetime(self.text, item));
         found
     }
 

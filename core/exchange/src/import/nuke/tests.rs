@@ -246,3 +246,22 @@ fn invisible_inverted_and_subtracting_shapes_are_told() {
     let found = nuke(&layer, &footage(), 4).unwrap();
     assert!(found.shapes.is_empty() && found.warnings[0].contains("its layer is invisible"), "{:?}", found.warnings);
 }
+
+#[test]
+fn each_kind_of_lifetime_hides_the_frames_outside_of_it() {
+    let points = "{p {{{2 0} {7 5}} 0} {10 0} {0 0} {0 0} {50 0} {0 0} {0 0} {50 90} {0 0}}";
+    let hidden = |kind: &str| {
+        let found = nuke(&script("bezier", points, &format!("{{a ltn 4 ltm 6 ltt {kind}}}")), &footage(), 1).unwrap();
+        let shape = &found.shapes[0];
+        (footage().first..=footage().last).filter(|&frame| shape.extent.hides(frame)).collect::<Vec<_>>()
+    };
+    let all: Vec<_> = (footage().first..=footage().last).collect();
+    let but = |shown: std::ops::RangeInclusive<FrameNumber>| {
+        all.iter().copied().filter(|frame| !shown.contains(frame)).collect::<Vec<_>>()
+    };
+    assert!(hidden("0").is_empty());
+    assert_eq!(hidden("1"), but(FrameNumber::MIN..=6));
+    assert_eq!(hidden("2"), but(4..=4));
+    assert_eq!(hidden("3"), but(4..=FrameNumber::MAX));
+    assert_eq!(hidden("4"), but(4..=6));
+}

@@ -1,0 +1,297 @@
+//! Puts the shapes of a file into a scene.
+//!
+//! **Why.** Shapes go out to another program, an artist edits one of them there, and all come back. What was not edited is known better in the
+//! document: which contours are keys, how sure the others are, feathers, pins, snapped paths. And what the file does not speak of was not edited.
+//!
+//! **How.** A shape that has a part's name and its number of points is compared with the part on each frame of which the file speaks
+//! ([`Extent`](super::Extent)), within [`SAME`]. Where it is the same, the part stays as it is. Where it is another one, its contour becomes a key if the file or the part has
+//! a key there, and a tracked contour if it is between two keys of the file. Hidden frames are compared in the same way.
+//!
+//! A shape with another number of points is compared as an outline (`outline`): the file of a snapped part has the points of its
+//! curve. Where the outline is another one, it becomes a key with control points on it and with its own paths between them. But if the file speaks of all frames of a part, and
+//! the outline is another one on all of them, then the shape was drawn anew. It replaces the part: only the depth and the colour stay.
+//!
+//! A shape that is open where its part is closed, or closed where it is open, replaces it too. If the part has contours of which the file does not speak, it is a
+//! new part beside it instead, so nothing is lost.
+//!
+//! Shapes with new names become new parts, nearer than all present parts. They are shown as the file shows them, also between keys, until they are tracked. Parts that lie in
+//! another order in the file get depths for that order (`order`).
+
+mod order;
+mod outline;
+
+use super::{Shape, hidden};
+use rototoon_base::geometry::Point;
+use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Distance within which points are the same, in pixels: formats round them, and some have 32 bits for a coordinate.
+const SAME: f64 = 0.01;
+
+/// What became of a shape.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Taken {
+    /// Name of the part.
+    pub name: String,
+    /// What it did to the scene.
+    pub change: Change,
+}
+
+/// What a shape did to a scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// It is a new part.
+    New,
+    /// It replaced the part of its name.
+    Replaced,
+    /// It changed the part of its name on these frames.
+    Frames(Vec<FrameNumber>),
+    /// It is a new part beside the one of its name, because one of both is open, and the part has frames of which the file does not speak.
+    Beside(String),
+    /// The part of its name was the same already.
+    Nothing,
+}
+
+/// What shapes did to a scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Merged {
+    /// What became of each shape, farthest first.
+    pub taken: Vec<Taken>,
+    /// Parts that lie at another depth now, because the file has them in another order.
+    pub moved: Vec<String>,
+    /// Parts with contours on frames of which the file does not speak, and these frames. They stay as they were.
+    pub kept: Vec<(String, Vec<FrameNumber>)>,
+}
+
+/// Puts shapes into the scene. Says for each what became of it.
+pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
+    let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
+    let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    for (place, part) in scene.parts.iter().enumerate() {
+        places.entry(part.name.clone()).or_insert(place);
+    }
+    // Files have no blanks at the ends of names.
+    for (place, part) in scene.parts.iter().enumerate() {
+        places.entry(part.name.trim().to_owned()).or_insert(place);
+    }
+    let mut merged = Merged::default();
+    let mut found = Vec::with_capacity(shapes.len());
+    for mut shape in shapes {
+        let own = places.get(&shape.name).copied();
+        let kept = own.map_or_else(Vec::new, |place| unspoken(&scene.parts[place], &shape));
+        let mut beside = None;
+        if let Some(place) = own.filter(|&place| !kept.is_empty() && scene.parts[place].closed != shape.closed) {
+            shape.name = free(&shape.name, &places);
+            beside = Some(scene.parts[place].name.clone());
+        }
+        let (name, change) = match own.filter(|_| beside.is_none()) {
+            Some(place) => {
+                let part = &mut scene.parts[place];
+                found.push(place);
+                (part.name.clone(), update(part, shape, &scene.footage))
+            }
+            None => {
+                let name = shape.name.clone();
+                places.insert(name.clone(), scene.parts.len());
+                scene.parts.push(Part { depth, ..part_of(shape) });
+                depth += 1.0;
+                (name, beside.map_or(Change::New, Change::Beside))
+            }
+        };
+        if !kept.is_empty() && matches!(change, Change::Nothing | Change::Frames(_)) {
+            merged.kept.push((name.clone(), kept));
+        }
+        merged.taken.push(Taken { name, change });
+    }
+    let moved = order::put(&mut scene.parts, &found);
+    merged.moved = moved.into_iter().map(|place| scene.parts[place].name.clone()).collect();
+    merged
+}
+
+/// The frames with contours of a part of which the file does not speak.
+fn unspoken(part: &Part, shape: &Shape) -> Vec<FrameNumber> {
+    let still = is_still(part);
+    let frames: BTreeSet<FrameNumber> = part.keys.keys().chain(part.tracks.keys()).copied().collect();
+    frames.into_iter().filter(|&frame| !shape.extent.speaks_of(frame, still)).collect()
+}
+
+/// Whether a part has the same contour on all frames.
+fn is_still(part: &Part) -> bool {
+    let mut contours = part.keys.values().chain(part.tracks.values());
+    contours.next().is_none_or(|first| contours.all(|other| is_same(first, other)))
+}
+
+/// A name that no part has yet.
+fn free(name: &str, places: &BTreeMap<String, usize>) -> String {
+    let numbered = (2..).map(|count| format!("{name} {count}"));
+    numbered.into_iter().find(|name| !places.contains_key(name)).unwrap_or_default()
+}
+
+/// A part that is as the file shows it.
+fn part_of(shape: Shape) -> Part {
+    let mut part = Part { closed: shape.closed, tracks: shown(&shape), ..Part::default() };
+    part.falloff = shape.falloff.unwrap_or_default();
+    (part.name, part.keys, part.absent) = (shape.name, shape.keys, shape.absent);
+    part.forget_where_absent();
+    part
+}
+
+/// The contours on all frames on which the file shows a shape.
+fn shown(shape: &Shape) -> BTreeMap<FrameNumber, Vec<Point>> {
+    let frames: Vec<FrameNumber> = match (shape.keys.first_key_value(), shape.keys.last_key_value()) {
+        (Some((first, _)), Some((last, _))) if first < last => (*first..=*last).collect(),
+        _ => Some(shape.extent.shown()).filter(|shown| shown.len() > 1).unwrap_or_default(),
+    };
+    frames.into_iter().map(|frame| (frame, hidden::form(&shape.keys, frame))).collect()
+}
+
+/// Brings a part up to date with the shape of its name.
+fn update(part: &mut Part, shape: Shape, footage: &Footage) -> Change {
+    let same_border = |part: &mut Part| merge_falloff(&mut part.falloff, shape.falloff);
+    let frames = if is_comparable(part, &shape) {
+        Some(merge(part, &shape, footage, &Points))
+    } else if part.closed == shape.closed && is_same_outline(part, &shape, footage) {
+        Some(merge(part, &shape, footage, &outline::Outline))
+    } else {
+        None
+    };
+    if let Some(frames) = frames {
+        return if same_border(part) && frames.is_empty() { Change::Nothing } else { Change::Frames(frames) };
+    }
+    let (name, depth, colour) = (std::mem::take(&mut part.name), part.depth, part.colour);
+    *part = Part { name, depth, colour, ..part_of(shape) };
+    Change::Replaced
+}
+
+/// Takes the falloff that a file gives. Files have its rate, but not its curve. Returns whether it was the same.
+fn merge_falloff(own: &mut Falloff, file: Option<Falloff>) -> bool {
+    let differs = file.filter(|file| (file.rate - own.rate).abs() > 1e-4);
+    if let Some(file) = differs {
+        *own = file;
+    }
+    differs.is_none()
+}
+
+/// Whether a shape has the points of a part.
+fn is_comparable(part: &Part, shape: &Shape) -> bool {
+    let count = shape.keys.values().next().map_or(0, Vec::len);
+    let mut contours = part.keys.values().chain(part.tracks.values()).peekable();
+    let curved = part.curves.keys().any(|&frame| part.complete_curves(frame).is_some());
+    let still = is_still(part);
+    let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
+    let own = || part.keys.iter().filter(|(frame, _)| spoken(frame));
+    let exact = || own().next().is_some() && own().all(|(at, key)| is_same(key, &hidden::form(&shape.keys, *at)));
+    part.closed == shape.closed
+        && contours.peek().is_some()
+        && contours.all(|points| points.len() == count)
+        // Few points may be those of the curve by chance.
+        && (!curved || exact())
+}
+
+/// Whether the outlines of a shape and of a part can be compared: the part has frames of which the file does not speak, or both are the same
+/// somewhere.
+fn is_same_outline(part: &Part, shape: &Shape, footage: &Footage) -> bool {
+    let still = is_still(part);
+    let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
+    let same =
+        |frame: FrameNumber| of_file(shape, frame).is_some_and(|file| outline::Outline.is_same(part, frame, &file));
+    let known = part.keys.len() + part.tracks.len() > 0;
+    known && (!unspoken(part, shape).is_empty() || (footage.first..=footage.last).filter(spoken).any(same))
+}
+
+fn is_same(a: &[Point], b: &[Point]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.distance(*b) <= SAME)
+}
+
+/// What the file shows on a frame; `None` where it hides the shape.
+fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
+    let shown = shape.keys.contains_key(&frame) || !shape.extent.hides(frame);
+    shown.then(|| hidden::form(&shape.keys, frame))
+}
+
+/// How a part is compared with what a file shows on a frame, and how it takes that.
+trait Compared {
+    /// Whether the part shows this on a frame on which it has a contour.
+    fn is_same(&self, part: &Part, frame: FrameNumber, file: &[Point]) -> bool;
+    /// The control points of what the file shows, and the paths between them if it shows more than these.
+    fn taken(&self, part: &Part, frame: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>);
+}
+
+/// Point by point.
+struct Points;
+
+impl Compared for Points {
+    fn is_same(&self, part: &Part, frame: FrameNumber, file: &[Point]) -> bool {
+        part.points_at(frame).is_some_and(|own| is_same(own, file))
+    }
+
+    fn taken(&self, _: &Part, _: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>) {
+        (file, Vec::new())
+    }
+}
+
+/// Changes a part where the file shows another contour, or another presence. Returns the frames.
+fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &impl Compared) -> Vec<FrameNumber> {
+    let known = part.keys.keys().chain(part.tracks.keys()).chain(shape.keys.keys());
+    let hidden = (footage.first..=footage.last).filter(|&frame| part.is_absent(frame));
+    let unseen = (footage.first..=footage.last).filter(|&frame| shape.extent.hides(frame));
+    let mut frames: BTreeSet<FrameNumber> = known.copied().chain(hidden).chain(unseen).collect();
+    let still = is_still(part);
+    frames.retain(|&frame| shape.extent.speaks_of(frame, still));
+    let mut changed = Vec::new();
+    // All are compared with the part as it is before the import.
+    let own = part.clone();
+    for frame in frames {
+        let has = own.points_at(frame).is_some();
+        // Beyond its keys a file says nothing of frames that the part does not have.
+        let file = of_file(shape, frame).filter(|_| has || shape.extent.has_between_keys(frame));
+        let is_other = match &file {
+            Some(file) if has => !compared.is_same(&own, frame, file),
+            Some(file) => !(is_undecided(&own, frame) && is_same(&hidden::form(&own.keys, frame), file)),
+            None => has || is_undecided(&own, frame),
+        };
+        if is_other {
+            let file = file.map(|file| compared.taken(&own, frame, file));
+            set(part, frame, file, shape.keys.contains_key(&frame));
+            changed.push(frame);
+        }
+    }
+    changed
+}
+
+/// Whether a part that is not tracked yet will be there on a frame: it lies between keys, and nobody has hidden it. Other programs show it on its
+/// way there.
+fn is_undecided(part: &Part, frame: FrameNumber) -> bool {
+    let between = part.keys.range(..frame).next().is_some() && part.keys.range(frame..).next().is_some();
+    part.tracks.is_empty() && between && !part.is_absent(frame)
+}
+
+/// Sets the contour of a part on a frame, or hides the part there. The paths between its control points are those that are given, or none.
+fn set(part: &mut Part, frame: FrameNumber, contour: Option<(Vec<Point>, Vec<Vec<Point>>)>, is_key: bool) {
+    let was_key = part.keys.remove(&frame).is_some();
+    part.pins.remove(&frame);
+    part.centers.remove(&frame);
+    part.confidence.remove(&frame);
+    part.curves.remove(&frame);
+    let is_tracked = !part.tracks.is_empty();
+    part.tracks.remove(&frame);
+    let Some((points, paths)) = contour else {
+        part.set_absent(frame, frame);
+        return;
+    };
+    part.clear_absent(frame, frame);
+    if is_key || was_key {
+        part.keys.insert(frame, points.clone());
+    }
+    // A key that is in the tracks is one that they know: nothing else of them is out of date.
+    if is_tracked {
+        part.tracks.insert(frame, points);
+    }
+    if !paths.is_empty() {
+        part.curves.insert(frame, paths);
+    }
+}
+
+#[cfg(test)]
+mod tests;
