@@ -77,7 +77,7 @@ pub use tween::{Tweened, captured, pegs_of, spacing_of, tween};
 pub use unseen::unseen;
 pub use untracked::untracked;
 
-use crate::export::{self, Detail, SvgOptions, svg_with_drawn};
+use crate::export::{self, Detail, ShapeOptions, SvgOptions, svg_with_drawn};
 use crate::fit;
 use crate::geometry::Point;
 use crate::pictures::Sequence;
@@ -273,9 +273,9 @@ pub fn export_svg(document: &Document, options: &SvgOptions) -> Result<String, P
     Ok(svg_with_drawn(&document.scene, &fills, &strokes, options))
 }
 
-/// Exports the document as a RotoPaint node for Nuke. `detail` says how it follows snapped paths.
-pub fn export_nuke(document: &Document, detail: impl Into<Detail>) -> String {
-    export::nuke(&document.scene, detail)
+/// Exports the document as a RotoPaint node for Nuke. `options` say how it follows snapped paths, and how wide the pixels are.
+pub fn export_nuke(document: &Document, options: impl Into<ShapeOptions>) -> String {
+    export::nuke(&document.scene, options)
 }
 
 /// Exports the document as a script that makes a Roto node in Natron. `detail` says how it follows snapped paths.
@@ -288,19 +288,33 @@ pub fn export_natron_project(document: &Document, detail: impl Into<Detail>) -> 
     export::natron_project(&document.scene, detail)
 }
 
-/// Exports the document as a script that makes masks in After Effects. `detail` says how it follows snapped paths.
-pub fn export_after_effects(document: &Document, detail: impl Into<Detail>) -> String {
-    export::after_effects(&document.scene, detail)
+/// Exports the document as a script that makes masks in After Effects. `options` say how it follows snapped paths, and how wide the pixels are.
+pub fn export_after_effects(document: &Document, options: impl Into<ShapeOptions>) -> String {
+    export::after_effects(&document.scene, options)
 }
 
-/// Exports the document as Silhouette shapes. `detail` says how it follows snapped paths.
-pub fn export_silhouette(document: &Document, detail: impl Into<Detail>) -> String {
-    export::silhouette(&document.scene, detail)
+/// Exports the document as Silhouette shapes. `options` say how it follows snapped paths, and how wide the pixels are.
+pub fn export_silhouette(document: &Document, options: impl Into<ShapeOptions>) -> String {
+    export::silhouette(&document.scene, options)
 }
 
-/// Exports the document as Polygon masks for Fusion. `detail` says how it follows snapped paths.
-pub fn export_fusion(document: &Document, detail: impl Into<Detail>) -> String {
-    export::fusion(&document.scene, detail)
+/// Exports the document as Polygon masks for Fusion. `options` say how it follows snapped paths, and how wide the pixels are.
+pub fn export_fusion(document: &Document, options: impl Into<ShapeOptions>) -> String {
+    export::fusion(&document.scene, options)
+}
+
+/// Width of a pixel of the footage in `folder` divided by its height: that of the first frame on which there is a picture, and 1 if no file says it.
+pub fn pixel_aspect(document: &Document, folder: &Path) -> f64 {
+    let Ok(sequence) = frames(document, folder) else { return 1.0 };
+    f64::from(sequence.pixel_aspect(document.scene.footage.first))
+}
+
+/// What is told if a form does not say that the pixels of the footage are not square.
+pub fn squeezed(pixel_aspect: f64, extension: &str) -> Option<String> {
+    let lost = pixel_aspect != 1.0 && !export::has_pixel_aspect(extension);
+    lost.then(|| {
+        format!("the pixels of the footage are {pixel_aspect} times as wide as high, and the file does not say so")
+    })
 }
 
 /// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command};
-use rototoon::export::{Detail, Motion, SvgOptions, svg};
+use rototoon::export::{Detail, Motion, ShapeOptions, SvgOptions, svg};
 use rototoon::import::too_large;
 use rototoon::pipeline::{self, Excerpt};
 use rototoon::project::output::check_writable;
@@ -119,6 +119,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     // Before frames are left out or get other numbers.
     let changed = changed(given, &document)?;
     let outside = outside(&document, &asked);
+    let pixel_aspect = pipeline::pixel_aspect(&document, &project::home(&document, from));
     let mut document = pipeline::excerpt(&document, &asked).map_err(|error| Failure::of(error, from))?;
     if let Some(nothing) = pipeline::nothing_for(&document, &extension) {
         let chosen =
@@ -129,25 +130,32 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         // Its masks go to the layer of the whole footage.
         document.scene.footage = whole;
     }
+    let text = written(given, &document, pixel_aspect)?;
+    write_whole(to, text.as_bytes())?;
+    let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
+    let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
+    let squeezed = pipeline::squeezed(pixel_aspect, &extension);
+    let warnings = [outside, left_out, pipeline::untracked(scene), pipeline::outdated(scene), squeezed, large];
+    warn(to, warnings.iter().flatten().chain(&changed));
+    Ok(())
+}
+
+/// The text of the file.
+fn written(given: &ArgMatches, document: &Document, pixel_aspect: f64) -> Result<String, Failure> {
     let id = arguments::choice(given, "motion");
     let motion = Motion::from_id(id).ok_or_else(|| Failure::Use(format!("no motion {id:?}")))?;
     let (spacing, bezier) = (arguments::number(given, "spacing"), bezier(given));
     let detail = bezier.map_or(Detail::Spacing(spacing), Detail::Bezier);
-    let text = match extension.as_str() {
-        "nk" => pipeline::export_nuke(&document, detail),
-        "ntp" => pipeline::export_natron_project(&document, detail),
-        "py" => pipeline::export_natron(&document, detail),
-        "jsx" => pipeline::export_after_effects(&document, detail),
-        "fxs" => pipeline::export_silhouette(&document, detail),
-        "setting" => pipeline::export_fusion(&document, detail),
-        _ => drawn(given, &document, &SvgOptions { motion, spacing, bezier })?,
-    };
-    write_whole(to, text.as_bytes())?;
-    let large = if ["ntp", "fxs", "svg"].contains(&extension.as_str()) { too_large(&text) } else { None };
-    let (left_out, scene) = (pipeline::left_out_of_shapes(&document, &extension), &document.scene);
-    let warnings = [outside, left_out, pipeline::untracked(scene), pipeline::outdated(scene), large];
-    warn(to, warnings.iter().flatten().chain(&changed));
-    Ok(())
+    let options = ShapeOptions { detail, pixel_aspect };
+    Ok(match extension(given)?.as_str() {
+        "nk" => pipeline::export_nuke(document, options),
+        "ntp" => pipeline::export_natron_project(document, detail),
+        "py" => pipeline::export_natron(document, detail),
+        "jsx" => pipeline::export_after_effects(document, options),
+        "fxs" => pipeline::export_silhouette(document, options),
+        "setting" => pipeline::export_fusion(document, options),
+        _ => drawn(given, document, &SvgOptions { motion, spacing, bezier })?,
+    })
 }
 
 /// What is told of contours that no frame of the footage has. Whoever asks for frames knows that others are left out.

@@ -107,18 +107,17 @@ impl<'a> Bindings<'a> {
             let torso = set.template.torso().iter().map(named).collect::<Vec<_>>().join(", ");
             return Err(CaptureError::NoLimbs { torso });
         }
-        let mut ends = Vec::with_capacity(set.limbs.len());
-        for (limb, l) in set.limbs.iter().enumerate() {
-            let bind = |end: &'static str, point: usize| {
-                let given = if end == "start" { &l.start } else { &l.end };
-                given.points[point].bind(parts).map_err(|source| {
-                    let [from, to] = [l.from, l.to].map(|k| set.template.point_name(k));
-                    CaptureError::Binding { limb, name: format!("{from} to {to}"), end, point, source }
-                })
-            };
-            ends.push([[bind("start", 0)?, bind("start", 1)?], [bind("end", 0)?, bind("end", 1)?]]);
-        }
-        Ok(Self { set, parts, ends })
+        let bind = |limb, end, point| bind(set, parts, (limb, end, point));
+        let end = |limb, end| Ok([bind(limb, end, 0)?, bind(limb, end, 1)?]);
+        let ends = (0..set.limbs.len()).map(|limb| Ok([end(limb, "start")?, end(limb, "end")?]));
+        Ok(Self { set, parts, ends: ends.collect::<Result<_, CaptureError>>()? })
+    }
+
+    /// All calibration points that cannot be found on their contours, each as its error.
+    pub fn problems(set: &LimbSet, parts: &[Part]) -> Vec<CaptureError> {
+        let points = ["start", "end"].into_iter().flat_map(|end| [(end, 0), (end, 1)]);
+        let all = (0..set.limbs.len()).flat_map(|limb| points.clone().map(move |(end, point)| (limb, end, point)));
+        all.filter_map(|place| bind(set, parts, place).err()).collect()
     }
 
     /// Both key points of a limb on a frame (eqs. 2, 3); `None` for an end whose part is missing there.
@@ -156,6 +155,20 @@ impl<'a> Bindings<'a> {
         let mirrored = |k: usize| drawn[self.set.template.mirror(k)];
         if self.set.swapped(frame) { (0..drawn.len()).map(mirrored).collect() } else { drawn }
     }
+}
+
+/// Binds a calibration point: of a limb, at its `start` or `end`, the first (0) or the second (1).
+fn bind(
+    set: &LimbSet,
+    parts: &[Part],
+    (limb, end, point): (usize, &'static str, usize),
+) -> Result<Bound, CaptureError> {
+    let l = &set.limbs[limb];
+    let given = if end == "start" { &l.start } else { &l.end };
+    given.points[point].bind(parts).map_err(|source| {
+        let [from, to] = [l.from, l.to].map(|k| set.template.point_name(k));
+        CaptureError::Binding { limb, name: format!("{from} to {to}"), end, point, source }
+    })
 }
 
 /// Captures a clip. It covers the given frames from the first to the last on which the limbs determine both ends of the

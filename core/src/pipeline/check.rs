@@ -1,12 +1,15 @@
 //! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
+use super::report::runs;
 use super::tween::{peg_of, spacing};
 use super::{PipelineError, changed, gaps, outside};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::seen::Made;
 use crate::project::{Document, FieldError, Problems};
-use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress};
+use crate::reshape::capture::Bindings;
+use crate::scene::limbs::LimbSet;
+use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress, Scene};
 use crate::track::rototoon::{WIDEST, too_wide};
 use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -20,8 +23,9 @@ use std::path::Path;
 pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Result<Problems, PipelineError> {
     let mut problems = document.problems();
     problems.append(document.misspelt());
-    if let Err(error) = document.limbs() {
-        problems.error(error.place, format!("found {}, expected {}", error.found, error.expected));
+    match document.limbs() {
+        Ok(set) => limbs(&set, &document.scene, &mut problems),
+        Err(error) => problems.error(error.place, format!("found {}, expected {}", error.found, error.expected)),
     }
     problems.append(drawing_problems(document));
     if let Err(error) = paint(document, &mut problems) {
@@ -59,10 +63,36 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     Ok(problems)
 }
 
-/// Warns of colours that become others without effect. The error is the first invalid field of the document's paint.
+/// Finds what is wrong with limbs as clips and reshaping find it, and warns of what they carry in vain.
+fn limbs(set: &LimbSet, scene: &Scene, problems: &mut Problems) {
+    for error in Bindings::problems(set, &scene.parts) {
+        let told = error.to_string();
+        let (place, what) = told.split_once(": ").unwrap_or(("limbs", &told));
+        problems.error(place, what);
+    }
+    for (k, limb) in set.limbs.iter().enumerate() {
+        for carried in limb.carries.iter().filter(|carried| scene.part_index(&carried.part).is_err()) {
+            let told = format!("there is no part {:?}, so the limb does not carry it", carried.part);
+            problems.warning(format!("limbs[{k}].carries"), told);
+        }
+    }
+}
+
+/// Names clicks outside of the footage, and warns of colours that become others without effect, and of what lies outside. The error is the first invalid
+/// field of the document's paint.
 fn paint(document: &Document, problems: &mut Problems) -> Result<(), FieldError> {
-    document.fills()?;
-    document.filled()?;
+    let footage = &document.scene.footage;
+    let own = footage.first..=footage.last;
+    for (k, clicks) in document.fills()?.iter().enumerate().filter(|(_, clicks)| !own.contains(&clicks.frame)) {
+        problems.error(format!("fills[{k}].frame"), super::fill::outside(clicks.frame, footage));
+    }
+    let filled = document.filled()?.into_iter().map(|drawing| drawing.frame);
+    let unused: Vec<FrameNumber> = filled.filter(|frame| !own.contains(frame)).collect();
+    if !unused.is_empty() {
+        let (first, last) = (footage.first, footage.last);
+        let told = format!("found frames {}, which are never drawn: the footage has {first} to {last}", runs(&unused));
+        problems.warning("filled", told);
+    }
     super::recolour::problems(document, problems)
 }
 
@@ -216,6 +246,42 @@ mod tests {
         let expected = "fills[0] (frame 0).regions[0].name: found \"coat\", expected a name of the field palette, or a colour beside it";
         assert_eq!(told(json!({"fills": [click]})).as_deref(), Some(expected));
         assert!(told(json!({"palette": 7})).is_some_and(|told| told.starts_with("palette: found 7")));
+    }
+
+    #[test]
+    fn what_lies_outside_of_the_footage_is_named() {
+        let clicks = json!([{"frame": 10, "regions": [{"at": [1, 1], "colour": [0, 0, 1]}]}]);
+        let filled = json!([{"frame": 12, "regions": []}, {"frame": 13, "regions": []}]);
+        let mut problems = Problems::default();
+        paint(&document(&json!({"fills": clicks, "filled": filled})), &mut problems).unwrap();
+        let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
+        assert!(
+            told.contains(&"fills[0].frame: found 10, expected a frame of the footage, 0 to 9".to_owned()),
+            "{told:?}"
+        );
+        assert!(
+            told.iter().any(|told| told.starts_with("filled: found frames 12-13, which are never drawn")),
+            "{told:?}"
+        );
+        assert_eq!(problems.error_count(), 1);
+    }
+
+    #[test]
+    fn limbs_that_cannot_be_bound_are_all_named() {
+        let points =
+            |a: (&str, f64), b: (&str, f64)| json!({"points": [{"part": a.0, "at": a.1}, {"part": b.0, "at": b.1}]});
+        let limb = json!({"from": "r_shoulder", "to": "r_elbow", "start": points(("arm", 0.0), ("nobody", 1.0)),
+            "end": points(("arm", 3.5), ("arm", 1.0)), "carries": ["arm", "mitten"]});
+        let arm = json!({"name": "arm", "closed": true, "keys": {"0": [[0, 0], [9, 0], [9, 9]]}});
+        let document = document(&json!({"parts": [arm], "limbs": [limb]}));
+        let mut problems = Problems::default();
+        limbs(&document.limbs().unwrap(), &document.scene, &mut problems);
+        let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
+        let place = "limbs[0] (r_shoulder to r_elbow)";
+        assert_eq!(told[0], format!("{place}.start.points[1].part: found \"nobody\", expected one of \"arm\""));
+        assert!(told[1].starts_with(&format!("{place}.end.points[0].at: found 3.5, expected 0 to ")), "{told:?}");
+        assert_eq!(told[2], "limbs[0].carries: there is no part \"mitten\", so the limb does not carry it");
+        assert_eq!((problems.error_count(), problems.warning_count()), (2, 1));
     }
 
     #[test]

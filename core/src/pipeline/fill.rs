@@ -30,7 +30,7 @@ use crate::project::Document;
 use crate::project::fills::{FillClick, FillClicks, FilledDrawing, FilledRegion, Hue};
 use crate::project::recolours::Recolours;
 use crate::project::seen::Made;
-use crate::scene::{FrameNumber, Progress};
+use crate::scene::{Footage, FrameNumber, Progress};
 use crate::track::Cache;
 use pages::{Known, Painted};
 use std::collections::BTreeMap;
@@ -155,9 +155,7 @@ fn clicks(document: &Document, recolours: &Recolours) -> Result<Vec<(usize, Fill
     clicks.iter_mut().for_each(|own| recolours.mean(own));
     if let Some((k, found)) = clicks.iter().enumerate().find(|(_, c)| c.frame < footage.first || c.frame > footage.last)
     {
-        let found = found.frame;
-        let (a, b) = (footage.first, footage.last);
-        return Err(field(&format!("fills[{k}].frame: found {found}, expected a frame of the footage, {a} to {b}")));
+        return Err(field(&format!("fills[{k}].frame: {}", outside(found.frame, footage))));
     }
     let clicks: Vec<(usize, FillClicks)> =
         clicks.into_iter().enumerate().filter(|own| !own.1.clicks.is_empty()).collect();
@@ -166,6 +164,11 @@ fn clicks(document: &Document, recolours: &Recolours) -> Result<Vec<(usize, Fill
         return Err(field(&format!("fills: found no click, expected {expected}")));
     }
     Ok(clicks)
+}
+
+/// What is told of clicks on a frame outside of the footage.
+pub(super) fn outside(frame: FrameNumber, footage: &Footage) -> String {
+    format!("found {frame}, expected a frame of the footage, {} to {}", footage.first, footage.last)
 }
 
 /// The error of a field.

@@ -7,8 +7,9 @@ use super::settings::{self, Settings};
 use super::shared::Loaded;
 use super::state::State;
 use super::{id_files, instance, motion, numbering};
+use crate::description::OUTPUT;
 use crate::ofx::{Effect, Failure};
-use rototoon::export::SvgOptions;
+use rototoon::export::{Detail, ShapeOptions, SvgOptions};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::{Document, write_whole};
@@ -96,13 +97,14 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
         return id_files::write(effect, &document, &path.to_string_lossy(), offset);
     }
     numbering::shift(&mut document.scene, offset);
+    let options = ShapeOptions { detail: Detail::Spacing(SPACING), pixel_aspect: effect.clip(OUTPUT)?.pixel_aspect() };
     let text = match extension.as_str() {
-        "nk" => pipeline::export_nuke(&document, SPACING),
+        "nk" => pipeline::export_nuke(&document, options),
         "ntp" => pipeline::export_natron_project(&document, SPACING),
         "py" => pipeline::export_natron(&document, SPACING),
-        "jsx" => pipeline::export_after_effects(&document, SPACING),
-        "fxs" => pipeline::export_silhouette(&document, SPACING),
-        "setting" => pipeline::export_fusion(&document, SPACING),
+        "jsx" => pipeline::export_after_effects(&document, options),
+        "fxs" => pipeline::export_silhouette(&document, options),
+        "setting" => pipeline::export_fusion(&document, options),
         "svg" => pipeline::export_svg(&document, &SvgOptions { spacing: SPACING, ..SvgOptions::default() })
             .map_err(|error| Failure::Told(error.to_string()))?,
         _ => {
@@ -116,8 +118,10 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
         return Err(Failure::Told(format!("export file: {nothing}")));
     }
     write_whole(path, text.as_bytes()).map_err(|error| Failure::Told(error.to_string()))?;
-    if let Some(warning) = pipeline::left_out_of_shapes(&document, &extension) {
-        instance(effect)?.note(effect, &warning, false);
+    let left_out = pipeline::left_out_of_shapes(&document, &extension);
+    let told: Vec<String> = left_out.into_iter().chain(pipeline::squeezed(options.pixel_aspect, &extension)).collect();
+    if !told.is_empty() {
+        instance(effect)?.note(effect, &told.join("; "), false);
     }
     Ok(())
 }

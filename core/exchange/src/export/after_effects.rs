@@ -17,7 +17,7 @@
 
 use super::coordinate;
 use super::knot::Knot;
-use super::outlines::{Detail, Keys, Outlines};
+use super::outlines::{Keys, Outlines, ShapeOptions};
 use rototoon_base::scene::{FalloffCurve, FrameNumber, Part, Scene};
 use std::fmt::Write;
 
@@ -25,7 +25,7 @@ use std::fmt::Write;
 const HEAD: &str = "// Shapes of Rototoon for After Effects. Select the footage's layer, and run this file: File > Scripts > Run Script File.
 // It adds a mask for each part. If no layer is selected, it makes a composition with a solid.
 
-// Size, frame rate and number of frames of the footage; for each part its name, whether it is closed, its colour, and by
+// Size, width of a pixel by its height, frame rate and number of frames of the footage; for each part its name, whether it is closed, its colour, and by
 // frame, counted from 0, x and y of each point in pixels with y down. Parts have no contour on other frames. If a part is bent, each
 // point is followed by x and y of the tangents before and after it, relative to the point.
 var ROTOTOON = ";
@@ -49,9 +49,9 @@ function rototoonLayer(comp) {
 
 function rototoonNewLayer() {
     var seconds = ROTOTOON.frames / ROTOTOON.fps;
-    var comp = app.project.items.addComp("Rototoon", ROTOTOON.width, ROTOTOON.height, 1, seconds, ROTOTOON.fps);
+    var comp = app.project.items.addComp("Rototoon", ROTOTOON.width, ROTOTOON.height, ROTOTOON.pixelAspect, seconds, ROTOTOON.fps);
     comp.openInViewer();
-    return comp.layers.addSolid([1, 1, 1], "Rototoon", ROTOTOON.width, ROTOTOON.height, 1, seconds);
+    return comp.layers.addSolid([1, 1, 1], "Rototoon", ROTOTOON.width, ROTOTOON.height, ROTOTOON.pixelAspect, seconds);
 }
 
 function rototoonShape(part, numbers) {
@@ -132,15 +132,17 @@ try {
 }
 "#;
 
-/// The scene's parts as a script for After Effects. `detail` says how they follow snapped paths.
-pub fn after_effects(scene: &Scene, detail: impl Into<Detail>) -> String {
-    let detail = detail.into();
+/// The scene's parts as a script for After Effects. `options` say how they follow snapped paths, and how wide the pixels are.
+pub fn after_effects(scene: &Scene, options: impl Into<ShapeOptions>) -> String {
+    let ShapeOptions { detail, pixel_aspect } = options.into();
     let footage = &scene.footage;
     let frames = i64::from(footage.last) - i64::from(footage.first) + 1;
     let (width, height, fps) = (footage.width, footage.height, footage.fps);
     let mut out = String::from(HEAD);
-    let _ =
-        write!(out, "{{\"width\": {width}, \"height\": {height}, \"fps\": {fps}, \"frames\": {frames}, \"parts\": [");
+    let _ = write!(
+        out,
+        "{{\"width\": {width}, \"height\": {height}, \"pixelAspect\": {pixel_aspect}, \"fps\": {fps}, \"frames\": {frames}, \"parts\": ["
+    );
     let mut any = false;
     for index in super::nearest_first(scene) {
         let outlines = Outlines::new(&scene.parts[index], detail);
@@ -211,7 +213,7 @@ mod tests {
             Footage { pattern: "%d".into(), first: 10, last: 15, fps: 12.5, width: 40, height: 30, held: false };
         let parts = vec![part("far", 0.0, true), part("near", 2.0, false), Part::default()];
         let text = after_effects(&Scene { footage, parts }, 1.0);
-        let wanted = "{\"width\": 40, \"height\": 30, \"fps\": 12.5, \"frames\": 6, \"parts\": [
+        let wanted = "{\"width\": 40, \"height\": 30, \"pixelAspect\": 1, \"fps\": 12.5, \"frames\": 6, \"parts\": [
 {\"name\": \"near\", \"closed\": false, \"color\": ";
         assert!(text.contains(wanted), "{text}");
         assert!(

@@ -18,7 +18,7 @@
 
 use super::knot::Knot;
 use super::names::joined;
-use super::outlines::{Detail, Keys, Outlines, turning};
+use super::outlines::{Keys, Outlines, ShapeOptions, turning};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Scene};
@@ -29,9 +29,9 @@ const STEP: usize = 110;
 /// Tools in a row of the flow.
 const ROW: usize = 8;
 
-/// The scene's parts as a setting of Fusion. `detail` says how they follow snapped paths.
-pub fn fusion(scene: &Scene, detail: impl Into<Detail>) -> String {
-    let detail = detail.into();
+/// The scene's parts as a setting of Fusion. `options` say how they follow snapped paths, and how wide the pixels are.
+pub fn fusion(scene: &Scene, options: impl Into<ShapeOptions>) -> String {
+    let ShapeOptions { detail, pixel_aspect } = options.into();
     let names = joined(scene, "_", plain);
     let mut tools = Vec::new();
     for index in super::nearest_first(scene) {
@@ -39,7 +39,7 @@ pub fn fusion(scene: &Scene, detail: impl Into<Detail>) -> String {
         let keys = outlines.within(scene.footage.first, scene.footage.last);
         if !keys.is_empty() {
             let at = (STEP * (tools.len() % ROW), STEP / 2 * (tools.len() / ROW));
-            tools.push(tool(scene, (index, &names), (&keys, outlines.bent()), at));
+            tools.push(tool(scene, (index, &names), (&keys, outlines.bent(), pixel_aspect), at));
         }
     }
     format!("{{\n\tTools = ordered() {{\n{}\n\t}}\n}}\n", tools.join(",\n"))
@@ -67,7 +67,7 @@ fn companion(names: &[String], index: usize, what: &str) -> String {
 fn tool(
     scene: &Scene,
     (index, names): (usize, &[String]),
-    (keys, bent): (&Keys, bool),
+    (keys, bent, pixel_aspect): (&Keys, bool, f64),
     (left, top): (usize, usize),
 ) -> String {
     let (part, footage, name) = (&scene.parts[index], &scene.footage, &names[index]);
@@ -80,7 +80,7 @@ fn tool(
         ("OutputSize", "Input { Value = FuID { \"Custom\" }, }".to_owned()),
         ("MaskWidth", format!("Input {{ Value = {}, }}", footage.width)),
         ("MaskHeight", format!("Input {{ Value = {}, }}", footage.height)),
-        ("PixelAspect", "Input { Value = { 1, 1 }, }".to_owned()),
+        ("PixelAspect", format!("Input {{ Value = {{ {pixel_aspect}, 1 }}, }}")),
         ("ClippingMode", "Input { Value = FuID { \"None\" }, }".to_owned()),
         ("Polyline", linked(&shape)),
         ("Polyline2", "Input { Value = Polyline { }, Disabled = true, }".to_owned()),

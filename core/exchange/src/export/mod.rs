@@ -35,7 +35,7 @@ pub use fusion::fusion;
 pub use natron::natron;
 pub use natron_project::natron_project;
 pub use nuke::nuke;
-pub use outlines::Detail;
+pub use outlines::{Detail, ShapeOptions};
 pub use silhouette::silhouette;
 pub use svg::{Motion, SvgFill, SvgOptions, SvgStroke, svg, svg_with_drawn};
 
@@ -46,6 +46,11 @@ fn nearest_first(scene: &Scene) -> Vec<usize> {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
     order
+}
+
+/// Whether a file with this extension says how wide the pixels of the footage are.
+pub fn has_pixel_aspect(extension: &str) -> bool {
+    ["nk", "fxs", "setting", "jsx"].contains(&extension)
 }
 
 /// Whether a file with this extension has all of a falloff.

@@ -14,7 +14,7 @@
 
 use super::knot::Knot;
 use super::names::written;
-use super::outlines::{Detail, Keys, Outlines};
+use super::outlines::{Detail, Keys, Outlines, ShapeOptions};
 use super::presence::presence;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber, Part, Scene};
@@ -27,12 +27,12 @@ const OPEN: u32 = 32;
 /// Type of lifetime: a range of frames.
 const FRAME_RANGE: f64 = 4.0;
 
-/// The scene's parts as a RotoPaint node. `detail` says how they follow snapped paths.
-pub fn nuke(scene: &Scene, detail: impl Into<Detail>) -> String {
-    let detail = detail.into();
+/// The scene's parts as a RotoPaint node. `options` say how they follow snapped paths, and how wide the pixels are.
+pub fn nuke(scene: &Scene, options: impl Into<ShapeOptions>) -> String {
+    let ShapeOptions { detail, pixel_aspect } = options.into();
     let (width, height) = (scene.footage.width, scene.footage.height);
     let mut out = String::from("set cut_paste_input [stack 0]\nversion 7.0 v1\nRotoPaint {\n inputs 0\n");
-    let _ = writeln!(out, " format \"{width} {height} 0 0 {width} {height} 1 \"");
+    let _ = writeln!(out, " format \"{width} {height} 0 0 {width} {height} {pixel_aspect} \"");
     let (x, y) = (number(0.5 * width as f64), number(0.5 * height as f64));
     let version = number(1.2);
     let _ = write!(
@@ -156,6 +156,9 @@ mod tests {
         let names: Vec<_> = text.split("curvegroup ").skip(1).map(|rest| rest.split('"').nth(1).unwrap()).collect();
         assert_eq!(names, ["near", "far _arm_"]);
         assert!(text.contains("{f 8224}") && text.contains("{f 8192}"));
+        assert!(text.contains("format \"40 30 0 0 40 30 1 \""));
+        let wide = nuke(&scene(), ShapeOptions { pixel_aspect: 2.0, ..1.0.into() });
+        assert_eq!(wide, text.replace("40 30 1 ", "40 30 2 "), "points are in pixels");
     }
 
     #[test]

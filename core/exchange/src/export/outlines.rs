@@ -23,6 +23,27 @@ impl From<f64> for Detail {
     }
 }
 
+/// How shapes are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeOptions {
+    /// How contours follow snapped paths.
+    pub detail: Detail,
+    /// Width of a pixel of the footage divided by its height.
+    pub pixel_aspect: f64,
+}
+
+impl From<Detail> for ShapeOptions {
+    fn from(detail: Detail) -> Self {
+        Self { detail, pixel_aspect: 1.0 }
+    }
+}
+
+impl From<f64> for ShapeOptions {
+    fn from(spacing: f64) -> Self {
+        Detail::Spacing(spacing).into()
+    }
+}
+
 /// Contours with their frames.
 pub type Keys = Vec<(FrameNumber, Vec<Knot>)>;
 

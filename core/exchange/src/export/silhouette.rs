@@ -5,14 +5,14 @@
 //! it, and that of the handle before it. Where sides are straight, both handles are at the point.
 //!
 //! Coordinates are independent of the resolution: the origin is the middle of the picture, x points right, y down, and
-//! the unit is the height of the picture. Key frames are counted from the session's first frame, which the root element
+//! the unit is the height of the picture. Where pixels are wider than high, x is wider too. Key frames are counted from the session's first frame, which the root element
 //! gives.
 //!
 //! Source: the makers have not published the format. This module writes what M. Borgo's exporter for Nuke writes;
 //! Silhouette reads that.
 
 use super::names::written;
-use super::outlines::{Detail, Outlines, turning};
+use super::outlines::{Outlines, ShapeOptions, turning};
 use super::presence::presence;
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
@@ -22,16 +22,17 @@ use std::fmt::Write;
 /// Decimals of a coordinate: a hundredth of a pixel at 10 000 lines.
 const DECIMALS: usize = 6;
 
-/// The scene's parts as a Silhouette document. `detail` says how they follow snapped paths.
-pub fn silhouette(scene: &Scene, detail: impl Into<Detail>) -> String {
-    let detail = detail.into();
+/// The scene's parts as a Silhouette document. `options` say how they follow snapped paths, and how wide the pixels are.
+pub fn silhouette(scene: &Scene, options: impl Into<ShapeOptions>) -> String {
+    let options = options.into();
     let footage = &scene.footage;
     let mut out = String::from("<!-- Silhouette Shape File -->\n");
     let _ = writeln!(
         out,
-        "<Silhouette width=\"{}\" height=\"{}\" pixelAspect=\"1\" workRangeStart=\"0\" workRangeEnd=\"{}\" sessionStartFrame=\"{}\">",
+        "<Silhouette width=\"{}\" height=\"{}\" pixelAspect=\"{}\" workRangeStart=\"0\" workRangeEnd=\"{}\" sessionStartFrame=\"{}\">",
         footage.width,
         footage.height,
+        options.pixel_aspect,
         i64::from(footage.last) - i64::from(footage.first),
         footage.first
     );
@@ -39,14 +40,14 @@ pub fn silhouette(scene: &Scene, detail: impl Into<Detail>) -> String {
     out += "   <Property id=\"objects\" constant=\"True\" expanded=\"True\">\n";
     let names = written(scene, plain);
     for index in super::nearest_first(scene) {
-        shape(&mut out, scene, (index, &names[index]), detail);
+        shape(&mut out, scene, (index, &names[index]), options);
     }
     out + "   </Property>\n  </Properties>\n </Layer>\n</Silhouette>\n"
 }
 
-fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), detail: Detail) {
+fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), options: ShapeOptions) {
     let part = &scene.parts[index];
-    let keys = Outlines::new(part, detail).within(scene.footage.first, scene.footage.last);
+    let keys = Outlines::new(part, options.detail).within(scene.footage.first, scene.footage.last);
     if keys.is_empty() {
         return;
     }
@@ -73,7 +74,7 @@ fn shape(out: &mut String, scene: &Scene, (index, name): (usize, &str), detail: 
             writeln!(out, "       <Key frame=\"{frame}\" interp=\"linear\"><Path closed=\"{closed}\" type=\"Bezier\">");
         for knot in knots {
             let [before, after] = knot.handles();
-            let [at, after, before] = [knot.at, after, before].map(|p| placed(p, scene));
+            let [at, after, before] = [knot.at, after, before].map(|p| placed(p, scene, options.pixel_aspect));
             let _ = writeln!(out, "        <Point>{at},{after},{before}</Point>");
         }
         *out += "       </Path></Key>\n";
@@ -94,9 +95,9 @@ fn opacity(changes: &[(FrameNumber, bool)], footage: &Footage) -> String {
     out + "      </Property>\n"
 }
 
-fn placed(p: Point, scene: &Scene) -> String {
+fn placed(p: Point, scene: &Scene, aspect: f64) -> String {
     let (width, height) = (scene.footage.width as f64, scene.footage.height as f64);
-    let (x, y) = ((p.x - 0.5 * width) / height, (p.y - 0.5 * height) / height);
+    let (x, y) = ((p.x - 0.5 * width) / height * aspect, (p.y - 0.5 * height) / height);
     format!("({x:.DECIMALS$},{y:.DECIMALS$})")
 }
 
@@ -137,6 +138,22 @@ mod tests {
         scene.footage.last = 16;
         let text = silhouette(&scene, 1.0);
         assert!(text.contains("<Property constant=\"True\" id=\"opacity\"><Value>100</Value></Property>"), "{text}");
+    }
+
+    #[test]
+    fn wide_pixels_come_back() {
+        let at = vec![Point::new(4.0, 2.0), Point::new(38.0, 2.0), Point::new(8.0, 10.0)];
+        let part = Part { name: "arm".into(), keys: BTreeMap::from([(10, at.clone())]), ..Part::default() };
+        let footage =
+            Footage { pattern: "%d".into(), first: 10, last: 19, fps: 12.5, width: 40, height: 30, held: false };
+        let text = silhouette(
+            &Scene { footage: footage.clone(), parts: vec![part] },
+            ShapeOptions { pixel_aspect: 2.0, ..1.0.into() },
+        );
+        // A pixel at 4 is 16 left of the middle, and each is as wide as two lines.
+        assert!(text.contains("pixelAspect=\"2\"") && text.contains("<Point>(-1.066667,"), "{text}");
+        let found = crate::import::silhouette::silhouette(&text, &footage).unwrap();
+        assert!(found.shapes[0].keys[&10].iter().zip(&at).all(|(a, b)| a.distance(*b) < 1e-4));
     }
 
     #[test]
