@@ -1,22 +1,23 @@
-"""Frames on which a part can probably not be seen, as the last Track found them. The parts keep them.
+"""Frames on which a part can probably not be seen, as its tracks say. The parts keep them.
 
 Nearer parts or the edge of the picture hide it there, so its contour is a guess, and the part often needs none. Only the artist knows: it is a question, which
 `rototoon.hide_unseen` answers. Frames are pictures here, and scene frames in what is told.
 
-Limits: documents do not hold them, so parts that come in from one, or from a farm, have none until they are tracked in Blender.
+Documents do not hold them: for those that come in, also from a farm, the library finds them again from the tracks.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from rototoon import Unseen
+from rototoon import RototoonError, Unseen
 
 from ..common import kept
 from ..common.wording import counted, listed
-from . import absence
+from . import absence, sessions
 
 NAMED = 3
 """Largest number of parts that a message tells. The panel tells all."""
@@ -39,9 +40,24 @@ class Question:
 
 def note(ob, found: Iterable[Unseen]) -> None:
     """Stores with an object's parts what a run found. They are known by name there."""
-    frames = {entry.part: entry.frames for entry in found}
+    note_pictures(ob, {entry.part: entry.frames for entry in found})
+
+
+def note_pictures(ob, pictures: Mapping[str, Iterable[int]]) -> None:
+    """The same, for pictures by the names of parts."""
     for item in ob.rototoon.parts:
-        put(item, frames.get(item.name, []))
+        put(item, pictures.get(item.name, []))
+
+
+def of_document(project: Mapping[str, Any]) -> dict[str, list[int]]:
+    """The pictures on which parts of a document can probably not be seen, by the names of these parts."""
+    try:
+        # Pictures are not read, so it does not matter where they are.
+        with sessions.make(project, ".") as session:
+            return {entry.part: entry.frames for entry in session.unseen()}
+    except RototoonError:
+        # It is a question only: what comes in is there without it.
+        return {}
 
 
 def put(part, pictures: Iterable[int]) -> None:

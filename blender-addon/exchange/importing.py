@@ -9,7 +9,7 @@ from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
-from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, writing
+from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, unseen, writing
 from . import files
 
 
@@ -36,6 +36,7 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
         block = writing.lay_out(0, parts, tracks, found, mapper, fixed)
         writing.limit(block, ob, 0, found)
         writing.write(gp.find_layer(ob, found.layer_names[0]), block, [])
+        unseen.note_pictures(ob, unseen.of_document(project))
     curves = _curves(project, settings.frame_offset)
     if curves:
         snapping.write(ob, curves, found, mapper)

@@ -165,9 +165,11 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     _note_ends(ob, sent, now)
     # They were found in contours that are gone.
     exchanged.put(ob, [row for row in exchanged.rows_of(ob) if not any(frames.get(number) for number in row[:2])])
+    hidden = unseen.of_document(result)
     for item in ob.rototoon.parts:
-        if frames.get(item.number):
-            unseen.put(item, [])
+        taken_here = frames.get(item.number)
+        if taken_here:
+            unseen.put(item, [picture for picture in hidden.get(item.name, []) if picture + ob.rototoon.frame_offset in taken_here])
     left = tracking.contour_layers(ob)
     snapped = _write_curves(ob, reading, sent, frames, taken)
     taken.left = "; ".join(filter(None, (guard.left_out(left, hidden=True), snapped)))

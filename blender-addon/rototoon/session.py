@@ -324,6 +324,11 @@ class Session:
         found = json.loads(self._handle.give(handles.Text, "rototoon_session_weakest_frame"))
         return None if found is None else WeakestFrame(found["frame"], found["score"])
 
+    def unseen(self) -> list[Unseen]:
+        """The parts that can probably not be seen on some frames, by the tracks that the document has. They are those of `Summary.unseen`, also where
+        the document was tracked elsewhere."""
+        return [Unseen(**found) for found in json.loads(self._handle.give(handles.Text, "rototoon_session_unseen"))]
+
     # -- life ----------------------------------------------------------------------------------------------------
 
     @property

@@ -1,5 +1,7 @@
 """Parts that can probably not be seen on some frames: what Track, the panel and scripts say of them, and the answer that it is so."""
 
+import json
+
 import bpy
 import layouts
 import pytest
@@ -117,6 +119,36 @@ def test_what_is_cleared_or_comes_from_a_document_asks_nothing(addon, shot, tmp_
     assert lines(addon) != {}
     bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json"), into="ACTIVE", keep_numbers=True)
     assert lines(addon) == {}
+
+
+def square(left, side):
+    return [[left, 10.0], [left + side, 10.0], [left + side, 10.0 + side], [left, 10.0 + side]]
+
+
+def behind():
+    """A document in which a small part goes behind a large one on picture 2 and comes back, tracked elsewhere."""
+    lefts, sure = [0.0, 22.0, 24.0, 56.0], [1.0, 0.1, 0.1, 1.0]
+    small = {
+        "name": "small",
+        "closed": True,
+        "keys": {"0": square(0.0, 6.0), "3": square(56.0, 6.0)},
+        "tracks": {str(k): square(left, 6.0) for k, left in enumerate(lefts)},
+        "confidence": {str(k): [one] * 4 for k, one in enumerate(sure)},
+    }
+    large = {"name": "large", "closed": True, "depth": 1.0, "keys": {"0": square(16.0, 34.0), "3": square(16.0, 34.0)}}
+    large |= {"tracks": {str(k): square(16.0, 34.0) for k in range(4)}, "confidence": {str(k): [1.0] * 4 for k in range(4)}}
+    footage = {"pattern": "f_%d.png", "first": 0, "last": 3, "fps": 12, "width": 64, "height": 48}
+    return {"rototoon": 1, "footage": footage, "parts": [small, large]}
+
+
+def test_a_document_that_was_tracked_elsewhere_is_asked_too(addon, library, tmp_path):
+    (tmp_path / "shot.json").write_text(json.dumps(behind()), encoding="utf-8")
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json"), keep_numbers=True)
+    ob = bpy.context.object
+    pictures = addon("capture.unseen").stored(ob.rototoon.parts[0])
+    assert pictures == [1, 2] and addon("capture.unseen").stored(ob.rototoon.parts[1]) == []
+    offset = ob.rototoon.frame_offset
+    assert addon("scripting").unseen(ob) == {"small": [1 + offset, 2 + offset]}
 
 
 @pytest.mark.parametrize("kept", ["{", "3", '["x"]', "[3.5]", "[true]", "null", '{"a": 1}'])

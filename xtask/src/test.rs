@@ -100,7 +100,22 @@ fn clippy() -> Result<Option<String>> {
 /// The pages of all items, also private ones: every link in them must lead somewhere.
 fn rust_docs() -> Result<Option<String>> {
     let arguments = ["doc", "--quiet", "--workspace", "--exclude", OFX_HOST, "--no-deps", "--document-private-items"];
-    run(cargo().args(arguments).env("RUSTDOCFLAGS", "-D warnings")).map(|()| None)
+    let mut doc = cargo();
+    doc.args(arguments).env("RUSTDOCFLAGS", "-D warnings");
+    run(doc.envs(as_clippy())).map(|()| None)
+}
+
+/// What Clippy's own subcommand sets, so that Cargo takes the packages that the step "clippy" has checked already. Without it each would be checked
+/// once more, by the plain compiler. If another Clippy sets other things, that is all that happens.
+fn as_clippy() -> Vec<(&'static str, PathBuf)> {
+    let Ok(sysroot) = capture(command("rustc").args(["--print", "sysroot"])) else { return Vec::new() };
+    let driver =
+        PathBuf::from(sysroot.trim()).join("bin").join(format!("clippy-driver{}", std::env::consts::EXE_SUFFIX));
+    if !driver.is_file() {
+        return Vec::new();
+    }
+    let warnings = "-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__";
+    vec![("RUSTC_WORKSPACE_WRAPPER", driver), ("CLIPPY_ARGS", warnings.into())]
 }
 
 /// Compiles what the Rust tests and the extension need, and runs nothing.

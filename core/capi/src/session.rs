@@ -193,6 +193,11 @@ impl Session {
         found.map_or(Value::Null, |w| json!({"frame": w.frame, "score": w.score})).to_string()
     }
 
+    /// The parts that can probably not be seen on some frames, by the tracks of the document, as JSON.
+    pub fn unseen(&self) -> String {
+        json!(unseen(&self.document.scene)).to_string()
+    }
+
     /// Tracks the parts. Returns the summary as JSON.
     pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Track)?;
@@ -396,16 +401,19 @@ fn summary(scene: &Scene, tracking: &Tracking) -> String {
         parts: found.parts.map(|part| scene.parts[part].name.as_str()),
         frames: &found.frames,
     });
-    let unseen =
-        (0..scene.parts.len()).map(|k| (k, pipeline::unseen(scene, k))).filter(|(_, frames)| !frames.is_empty());
-    let unseen = unseen.map(|(k, frames)| UnseenSummary { part: &scene.parts[k].name, frames });
     json!(Summary {
         jobs: jobs.collect(),
         ends: ends.collect(),
         exchanges: exchanges.collect(),
-        unseen: unseen.collect()
+        unseen: unseen(scene)
     })
     .to_string()
+}
+
+/// The parts that can probably not be seen on some frames.
+fn unseen(scene: &Scene) -> Vec<UnseenSummary<'_>> {
+    let all = (0..scene.parts.len()).map(|k| (k, pipeline::unseen(scene, k))).filter(|(_, frames)| !frames.is_empty());
+    all.map(|(k, frames)| UnseenSummary { part: &scene.parts[k].name, frames }).collect()
 }
 
 fn termination_id(termination: Termination) -> &'static str {

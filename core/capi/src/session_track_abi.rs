@@ -152,3 +152,23 @@ pub unsafe extern "C" fn rototoon_session_weakest_frame(
         })
     }
 }
+
+/// Returns the parts that can probably not be seen on some frames, by the tracks that the document has: JSON `[{"part", "frames": [frame]}]`, as in the summary of
+/// `rototoon_session_track`. So documents that were tracked elsewhere can be asked too.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rototoon_session_unseen(
+    session: *const RototoonSession,
+    unseen: *mut *mut RototoonText,
+    error: *mut *mut RototoonText,
+) -> RototoonStatus {
+    // SAFETY: the crate's contract.
+    unsafe {
+        entry(error, || {
+            clear(unseen, null_mut(), "unseen")?;
+            let session = handle(session, "session")?;
+            let value = session.with(|session| Ok(RototoonText::new(session.unseen())))?;
+            give(unseen, value);
+            Ok(())
+        })
+    }
+}
