@@ -330,7 +330,7 @@ fn a_part_is_marked_as_hidden_and_as_there_again() {
     let drawing = cartoon.path("drawing.svg");
     good(&["export", text(&again), "-o", text(&drawing)]);
     let drawing = fs::read_to_string(&drawing).unwrap();
-    assert!(drawing.contains("keyTimes=\"0;0.142857;0.714286\" values=\"visible;hidden;visible\""), "{drawing}");
+    assert!(drawing.contains("keyTimes=\"0;0.138392;0.709821\" values=\"visible;hidden;visible\""), "{drawing}");
     let kept = absent(&project, "5-6", &again, &[]);
     let told = String::from_utf8_lossy(&kept.stderr).into_owned();
     assert!(kept.status.success() && told.contains("part \"square\" has a key on frame 6, so it is there"), "{told}");

@@ -68,6 +68,12 @@ const LINE_WIDTH: f64 = 2.0;
 /// Opacity of fills, low enough to show what is behind a part.
 const FILL_OPACITY: f64 = 0.35;
 
+/// How much earlier than its frame a held value begins, as a share of the frame. At 60 frames a second it is half a millisecond, by which a clock of whole
+/// milliseconds may be late.
+const EARLY: f64 = 1.0 / 32.0;
+/// Least number of digits of a share of an animation.
+const LEAST_DIGITS: i32 = 6;
+
 /// The ids of the groups, and their names in Inkscape: painted regions.
 pub const PAINT: [&str; 2] = ["paint", "Paint"];
 /// Contours of parts.
@@ -325,7 +331,7 @@ fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, valu
         Motion::Linear => kept.push((n, values[n - 1])),
     }
     let mode = if motion == Motion::Hold { "discrete" } else { "linear" };
-    let times: Vec<_> = kept.iter().map(|(frame, _)| decimal(*frame as f64 / n as f64, 6).to_string()).collect();
+    let times: Vec<_> = kept.iter().map(|(frame, _)| share(*frame, n, motion)).collect();
     let texts: Vec<_> = kept.iter().map(|(_, value)| *value).collect();
     let _ = writeln!(
         out,
@@ -334,6 +340,19 @@ fn animate(out: &mut String, attribute: &str, seconds: f64, motion: Motion, valu
         times.join(";"),
         texts.join(";")
     );
+}
+
+/// When a frame begins, as a share of an animation of `n` frames.
+///
+/// A program that makes pictures of the film seeks to the time frame ∕ rate. A held value must be there by then. Clocks round this time: Chrome's has
+/// 32 bits and counts whole microseconds, Firefox's counts milliseconds. So a held value begins [`EARLY`] of a frame before, and digits
+/// that do not fit make it earlier too. There are enough of them for an error of less than 1 ∕ 64 of a frame.
+fn share(frame: usize, n: usize, motion: Motion) -> String {
+    let digits = ((64.0 * n as f64).log10().ceil() as i32).max(LEAST_DIGITS);
+    let scale = 10f64.powi(digits);
+    let early = if frame == 0 || motion == Motion::Linear { 0.0 } else { EARLY };
+    let steps = (frame as f64 - early) / n as f64 * scale;
+    decimal(steps.floor() / scale, digits).to_string()
 }
 
 /// The path of a contour.

@@ -25,7 +25,7 @@ fn a_part_is_one_path_over_the_footage() {
     assert!(text.contains("<title>a &lt; &quot;b&quot; &amp; c</title>"));
     assert_eq!(attribute(&text, "dur"), ["0.32s", "0.32s"]);
     assert_eq!(attribute(&text, "values"), ["M0 0L8 0 0 8Z;M2 0L10 0 2 8Z", "hidden;visible"]);
-    assert_eq!(attribute(&text, "keyTimes"), ["0;0.75", "0;0.25"]);
+    assert_eq!(attribute(&text, "keyTimes"), ["0;0.742187", "0;0.242187"]);
     assert_eq!(attribute(&text, "visibility"), ["hidden"], "on the first frame, for readers without animation");
 }
 
@@ -161,4 +161,45 @@ fn paint_contours_and_lines_are_layers_in_the_order_in_which_they_lie() {
     let text = svg_with_drawn(&bare, &[fill(3)], &[], &SvgOptions::default());
     assert_eq!(attribute(&text, "id"), ["paint", "fill-3"]);
     assert_eq!(text.matches("<g ").count(), text.matches("</g>").count());
+}
+
+/// Decimal digits as a whole number of steps of 10^-12.
+fn steps(text: &str) -> i128 {
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    assert!(fraction.len() <= 12, "{text}");
+    format!("{whole}{fraction:0<12}").parse().unwrap()
+}
+
+#[test]
+fn a_picture_at_the_time_of_a_frame_shows_that_frame() {
+    const ONE: i128 = 1_000_000_000_000;
+    for (numerator, denominator) in [(24_000, 1001), (24, 1), (25, 1), (30_000, 1001), (12, 1), (25, 2), (60, 1)] {
+        let fps = f64::from(numerator) / f64::from(denominator);
+        for n in [2, 3, 7, 24, 29, 100, 999, 5000, 200_000] {
+            let values: Vec<String> = (0..n).map(|k| k.to_string()).collect();
+            let values: Vec<&str> = values.iter().map(String::as_str).collect();
+            let mut text = String::new();
+            animate(&mut text, "d", n as f64 / fps, Motion::Hold, &values);
+            let length = steps(attribute(&text, "dur")[0].trim_end_matches('s'));
+            let times: Vec<i128> = attribute(&text, "keyTimes")[0].split(';').map(steps).collect();
+            assert_eq!((times.len(), times[0]), (n, 0));
+            // All in units of 10^-24 ∕ numerator of a second: the frame begins at k · denominator ∕ numerator.
+            let begins = |k: usize| k as i128 * i128::from(denominator) * ONE * ONE;
+            let frame = begins(1);
+            for (k, time) in times.iter().enumerate().skip(1) {
+                let shown = time * length * i128::from(numerator);
+                assert!(shown < begins(k) && shown > begins(k) - frame / 16, "{k} of {n} at {fps}");
+                assert!(*time > times[k - 1]);
+            }
+            // Clocks of 64 and of 32 bits, of whole microseconds and milliseconds.
+            let seconds = length as f64 / ONE as f64;
+            for (k, time) in times.iter().enumerate() {
+                let (at, time) = (k as f64 / fps, *time as f64 / ONE as f64);
+                for clock in [at, (f64::from(at as f32) * 1e6).floor() / 1e6, (at * 1e3).round() / 1e3] {
+                    // 32 bits count in steps of a tenth of a millisecond after half an hour.
+                    assert!(n > 5000 || clock / seconds >= time, "{k} of {n} at {fps}: {clock}");
+                }
+            }
+        }
+    }
 }
