@@ -20,11 +20,13 @@ pub(super) const MOST_POINTS: usize = 20_000_000;
 /// The points that a file may still have.
 pub(super) struct Points {
     left: usize,
+    /// Whether more were asked for.
+    pub spent: bool,
 }
 
 impl Points {
     pub(super) fn all() -> Self {
-        Self { left: MOST_POINTS }
+        Self { left: MOST_POINTS, spent: false }
     }
 
     /// Takes points for an element.
@@ -32,6 +34,7 @@ impl Points {
         match self.left.checked_sub(count) {
             Some(left) => self.left = left,
             None => {
+                self.spent = true;
                 let message = format!("found more than {MOST_POINTS} points up to here, expected fewer");
                 return Err(ImportError::at(node, message));
             }

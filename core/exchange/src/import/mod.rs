@@ -3,8 +3,12 @@
 //! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
+//! - `svg_length`: lengths with units
 //! - `svg_outline`: outlines of elements
+//! - `svg_selector`: which elements a rule of a style sheet is for
+//! - `svg_sheet`: style sheets
 //! - `svg_style`: what is hidden or filled
+//! - `svg_transform`: where elements stand
 //! - `svg_view`: view boxes
 //! - [`silhouette`]: Silhouette shapes
 //! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
@@ -40,8 +44,12 @@ mod range;
 pub mod silhouette;
 pub mod svg;
 mod svg_animation;
+mod svg_length;
 mod svg_outline;
+mod svg_selector;
+mod svg_sheet;
 mod svg_style;
+mod svg_transform;
 mod svg_view;
 
 pub use extent::Extent;

@@ -104,6 +104,15 @@ impl Path {
         segments.for_each(|(own, to)| *own = own.lerp(*to, share));
     }
 
+    /// Points among which are those that are farthest along each axis: its ends, and where the curves turn back along x or y.
+    pub fn extremes(&self) -> impl Iterator<Item = Point> + '_ {
+        let turns = |cubic: [Point; 4]| {
+            let [x, y] = [cubic.map(|p| p.x), cubic.map(|p| p.y)].map(turns);
+            x.into_iter().chain(y).flatten().map(move |t| at(&cubic, t)).chain([cubic[3]])
+        };
+        std::iter::once(self.start).chain(self.cubics().flat_map(turns))
+    }
+
     fn cubics(&self) -> impl Iterator<Item = [Point; 4]> + '_ {
         let mut from = self.start;
         self.segments.iter().map(move |&[first, second, to]| [std::mem::replace(&mut from, to), first, second, to])
@@ -170,6 +179,15 @@ fn steps(cubic: [Point; 4]) -> usize {
     (0.75 * bend / TOLERANCE).sqrt().ceil().clamp(1.0, MOST_STEPS) as usize
 }
 
+/// The parameters at which a cubic of one coordinate turns back.
+fn turns([a, b, c, d]: [f64; 4]) -> [Option<f64>; 2] {
+    let (square, middle, constant) = (d - 3.0 * c + 3.0 * b - a, c - 2.0 * b + a, b - a);
+    // Zeros of square t² + 2 middle t + constant, without the difference of nearly equal numbers.
+    let root = (middle * middle - square * constant).max(0.0).sqrt();
+    let sum = -(middle + root.copysign(middle));
+    [sum / square, constant / sum].map(|t| (t > 0.0 && t < 1.0).then_some(t))
+}
+
 fn at([a, b, c, d]: &[Point; 4], t: f64) -> Point {
     let u = 1.0 - t;
     u * u * u * *a + 3.0 * u * u * t * *b + 3.0 * u * t * t * *c + t * t * t * *d
@@ -228,6 +246,21 @@ mod tests {
             assert!(80.0 - middle < TOLERANCE && middle < 80.1, "{middle}");
         }
         assert!(found[1].len() < 40, "{}", found[1].len());
+    }
+
+    #[test]
+    fn the_extremes_of_a_path_are_where_its_curves_turn_back() {
+        let mut path = Path::new(p(0.0, 0.0));
+        path.cubic(p(0.0, 40.0), p(30.0, 40.0), p(30.0, 0.0));
+        path.cubic(p(20.0, -7.0), p(50.0, -9.0), p(31.0, 2.0));
+        path.line(p(31.0, 5.0));
+        let ends: Vec<Point> = path.extremes().collect();
+        for axis in [Point::X, Point::Y, -Point::X, -Point::Y] {
+            let most = ends.iter().map(|end| end.dot(axis)).fold(f64::NEG_INFINITY, f64::max);
+            let dense = path.cubics().flat_map(|cubic| (0..=10_000).map(move |k| at(&cubic, f64::from(k) * 1e-4)));
+            let expected = dense.map(|p| p.dot(axis)).fold(f64::NEG_INFINITY, f64::max);
+            assert!((most - expected).abs() < 1e-6, "{axis}: {most} {expected}");
+        }
     }
 
     #[test]

@@ -75,7 +75,7 @@ pub(super) fn place(node: Node) -> Place {
 }
 
 /// Elements that are left out, with the reasons.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct LeftOut(Vec<(usize, String)>);
 
 impl LeftOut {

@@ -3,37 +3,88 @@
 use super::ImportError;
 use super::limits::{FARTHEST, Points};
 use super::path::Path;
-use super::problem::{number, quoted};
+use super::problem::quoted;
+use super::svg_length::{Along, length};
+use super::svg_sheet::READ;
+use super::svg_style::Styles;
+use super::svg_view::View;
 use rototoon_base::geometry::Point;
 use roxmltree::Node;
 use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser};
 
-/// The path data of a shape element; `None` for other elements.
-pub(super) fn outline(node: Node) -> Result<Option<String>, ImportError> {
-    let value = |name: &str| number(node, name).map(Option::unwrap_or_default);
-    let positive = |name: &str| match number(node, name)? {
-        Some(value) if value >= 0.0 => Ok(value),
-        _ => {
-            let found = quoted(node.attribute(name));
-            Err(ImportError::at(node, format!("{name}: found {found}, expected a number from 0")))
-        }
-    };
-    Ok(Some(match node.tag_name().name() {
+/// The path data of a shape element; `None` for other elements. Lengths are of its style or of attributes.
+pub(super) fn outline(node: Node, styles: &Styles, view: &View) -> Result<Option<String>, ImportError> {
+    let element = node.tag_name().name();
+    let sizes = Sizes { node, styles, view };
+    let (value, positive) = (|name| sizes.value(name), |name| sizes.positive(name));
+    Ok(Some(match element {
         "path" => node.attribute("d").unwrap_or("").to_owned(),
         "polygon" => listed(node)? + "Z",
         "polyline" => listed(node)?,
         "line" => format!("M{} {}L{} {}", value("x1")?, value("y1")?, value("x2")?, value("y2")?),
         "circle" => ellipse(value("cx")?, value("cy")?, positive("r")?, positive("r")?),
-        "ellipse" => ellipse(value("cx")?, value("cy")?, positive("rx")?, positive("ry")?),
+        "ellipse" => {
+            let [rx, ry] = sizes.radii()?;
+            let one = || sizes.wrong("rx", "a length from 0");
+            let (rx, ry) = (rx.or(ry).ok_or_else(one)?, ry.or(rx).ok_or_else(one)?);
+            ellipse(value("cx")?, value("cy")?, rx, ry)
+        }
         "rect" => {
             let (width, height) = (positive("width")?, positive("height")?);
-            let (rx, ry) = (number(node, "rx")?, number(node, "ry")?);
+            let [rx, ry] = sizes.radii()?;
             let round =
                 |own: Option<f64>, other: Option<f64>, size: f64| own.or(other).unwrap_or(0.0).clamp(0.0, 0.5 * size);
             rectangle([value("x")?, value("y")?], [width, height], [round(rx, ry, width), round(ry, rx, height)])
         }
         _ => return Ok(None),
     }))
+}
+
+/// The lengths of a shape element.
+struct Sizes<'a, 'b> {
+    node: Node<'a, 'b>,
+    styles: &'a Styles,
+    view: &'a View,
+}
+
+impl Sizes<'_, '_> {
+    fn text(&self, name: &str) -> Option<&str> {
+        // The ends of a line are no properties of a style.
+        if READ.contains(&name) { self.styles.own(self.node, name) } else { self.node.attribute(name) }
+    }
+
+    fn wrong(&self, name: &str, expected: &str) -> ImportError {
+        ImportError::at(self.node, format!("{name}: found {}, expected {expected}", quoted(self.text(name))))
+    }
+
+    /// A length; 0 if it is missing.
+    fn value(&self, name: &str) -> Result<f64, ImportError> {
+        let along = match name {
+            "x" | "cx" | "rx" | "width" | "x1" | "x2" => Along::X,
+            "r" => Along::Both,
+            _ => Along::Y,
+        };
+        let Some(text) = self.text(name) else { return Ok(0.0) };
+        length(text, self.view, along)
+            .ok_or_else(|| self.wrong(name, "a number, a length such as 5mm or a share such as 50%"))
+    }
+
+    /// A length that must be there and not be negative.
+    fn positive(&self, name: &str) -> Result<f64, ImportError> {
+        match self.value(name)? {
+            value if value >= 0.0 && self.text(name).is_some() => Ok(value),
+            _ => Err(self.wrong(name, "a length from 0")),
+        }
+    }
+
+    /// The radii along x and y, as far as they are there.
+    fn radii(&self) -> Result<[Option<f64>; 2], ImportError> {
+        let own = |name: &str| match self.text(name) {
+            None | Some("auto") => Ok(None),
+            Some(_) => self.positive(name).map(Some),
+        };
+        Ok([own("rx")?, own("ry")?])
+    }
 }
 
 fn listed(node: Node) -> Result<String, ImportError> {

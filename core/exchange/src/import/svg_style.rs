@@ -1,105 +1,102 @@
 //! How an SVG document shows an element, as far as it matters for its outline.
 //!
-//! A property is, from the strongest to the weakest, a declaration in the attribute `style`, one of a style sheet of the document, or
-//! an attribute of its own. Of a style sheet, rules for an element's name, a class or an id are read. `fill` and `visibility` are those of
+//! A property is, from the strongest to the weakest, an important declaration in the attribute `style` or in a style sheet of the document
+//! (`svg_sheet`), another one in `style`, another one of a sheet, or an attribute of its own. `fill` and `visibility` are those of
 //! the nearest element around that has one; `display` and `opacity` of an element hide all in it.
 //!
-//! Source: W3C, Scalable Vector Graphics (SVG) 2, chapters on styling and rendering; CSS 2.2, on specificity.
+//! Source: W3C, Scalable Vector Graphics (SVG) 2, chapters on styling and rendering; CSS Cascading and Inheritance Level 4.
 
+use super::problem::{LeftOut, quoted};
+use super::svg_selector::Selector;
+use super::svg_sheet::{READ, Sheet, declarations};
 use roxmltree::{Document, Node};
+use std::collections::BTreeMap;
 
-/// What a rule of a style sheet is for.
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum Selector {
-    Element(String),
-    Class(String),
-    Id(String),
-}
+/// Properties that move an element and are not read. Attributes of these names mean something else.
+const MOVING: [&str; 6] = ["translate", "rotate", "scale", "offset-path", "animation", "animation-name"];
+/// Media of a sheet for pictures.
+const MEDIA: [&str; 3] = ["", "all", "screen"];
 
-impl Selector {
-    fn read(text: &str) -> Option<Self> {
-        let text = text.trim();
-        let name = text.trim_start_matches(['.', '#']);
-        let plain = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || "-_".contains(c));
-        plain.then(|| match text.as_bytes()[0] {
-            b'.' => Self::Class(name.to_owned()),
-            b'#' => Self::Id(name.to_owned()),
-            _ => Self::Element(name.to_owned()),
-        })
-    }
-
-    fn fits(&self, node: Node) -> bool {
-        match self {
-            Self::Element(name) => node.tag_name().name() == name,
-            Self::Class(name) => {
-                node.attribute("class").is_some_and(|own| own.split_whitespace().any(|own| own == name))
-            }
-            Self::Id(name) => node.attribute("id") == Some(name),
-        }
-    }
+/// A declaration of a style sheet.
+#[derive(Debug)]
+struct Declared {
+    selector: Selector,
+    value: String,
+    important: bool,
 }
 
 /// The style sheets of a document.
 #[derive(Debug, Default)]
 pub(super) struct Styles {
-    /// Selectors with a property and its value, the weakest first.
-    rules: Vec<(Selector, String, String)>,
-}
-
-/// The declarations in a text: properties in small letters, and values.
-fn declarations(text: &str) -> impl Iterator<Item = (String, &str)> {
-    text.split(';').filter_map(|text| {
-        let (name, value) = text.split_once(':')?;
-        let value = value.trim();
-        Some((name.trim().to_ascii_lowercase(), value.strip_suffix("!important").unwrap_or(value).trim()))
-    })
+    /// The declarations of each property, the weakest first.
+    sheets: BTreeMap<&'static str, Vec<Declared>>,
+    /// What is not read of them.
+    pub unread: LeftOut,
 }
 
 impl Styles {
     /// Reads the style sheets of a document.
     pub fn of(document: &Document) -> Self {
-        let mut rules = Vec::new();
-        let sheets = document.descendants().filter(|node| node.is_element() && node.tag_name().name() == "style");
-        for sheet in sheets.filter_map(|node| node.text()) {
-            for rule in without_comments(sheet).split('}') {
-                let Some((selectors, body)) = rule.split_once('{') else { continue };
-                for selector in selectors.split(',').filter_map(Selector::read) {
-                    let own = declarations(body).map(|(name, value)| (selector.clone(), name, value.to_owned()));
-                    rules.extend(own);
+        let (mut rules, mut unread) = (Vec::new(), LeftOut::default());
+        for node in document.descendants() {
+            if node.is_element() && node.tag_name().name() == "style" {
+                let sheet = sheet(node);
+                rules.extend(sheet.rules);
+                if !sheet.unread.is_empty() {
+                    unread.push(node, format!("not read of the style sheet: {}", listed(&sheet.unread)));
                 }
+            } else if node.pi().is_some_and(|pi| pi.target == "xml-stylesheet") {
+                unread.push(node, "the style sheet in another file is not read".to_owned());
             }
         }
-        // The kind of selector decides, then the place in the document.
-        rules.sort_by_key(|(selector, ..)| match selector {
-            Selector::Element(_) => 0,
-            Selector::Class(_) => 1,
-            Selector::Id(_) => 2,
-        });
-        Self { rules }
+        // The strength of the selector decides, then the place in the document.
+        rules.sort_by_key(|rule| rule.selector.strength());
+        let mut sheets: BTreeMap<&'static str, Vec<Declared>> = BTreeMap::new();
+        for rule in rules {
+            let declared = Declared { selector: rule.selector, value: rule.value, important: rule.important };
+            sheets.entry(rule.property).or_default().push(declared);
+        }
+        Self { sheets, unread }
+    }
+
+    /// The value of a property that an element has by its style, and not by an attribute.
+    fn styled<'a>(&'a self, node: Node<'a, '_>, property: &str) -> Option<&'a str> {
+        let inline =
+            || node.attribute("style").into_iter().flat_map(declarations).filter(|(name, ..)| name == property);
+        let own = |important| inline().filter(|(.., is)| *is == important).last().map(|(_, value, _)| value);
+        let ruled = |important| {
+            let mut fitting = self.sheets.get(property)?.iter().rev().filter(|rule| rule.important == important);
+            fitting.find(|rule| rule.selector.fits(node)).map(|rule| rule.value.as_str())
+        };
+        own(true).or_else(|| ruled(true)).or_else(|| own(false)).or_else(|| ruled(false))
     }
 
     /// The value of a property that an element has itself.
-    fn own<'a>(&'a self, node: Node<'a, '_>, property: &str) -> Option<&'a str> {
-        let styled = node
-            .attribute("style")
-            .and_then(|text| declarations(text).filter(|(name, _)| name == property).last().map(|(_, value)| value));
-        let ruled = || {
-            let mut fitting = self.rules.iter().rev().filter(|(_, name, _)| name == property);
-            fitting.find(|(selector, ..)| selector.fits(node)).map(|(.., value)| value.as_str())
-        };
-        styled.or_else(ruled).or_else(|| node.attribute(property).map(str::trim))
+    pub fn own<'a>(&'a self, node: Node<'a, '_>, property: &str) -> Option<&'a str> {
+        debug_assert!(READ.contains(&property), "{property}");
+        self.styled(node, property).or_else(|| node.attribute(property).map(str::trim))
     }
 
     /// The value of a property that elements inherit.
-    fn inherited<'a>(&'a self, node: Node<'a, '_>, property: &str) -> Option<&'a str> {
+    pub fn inherited<'a>(&'a self, node: Node<'a, '_>, property: &str) -> Option<&'a str> {
         node.ancestors()
             .filter(Node::is_element)
             .find_map(|node| self.own(node, property).filter(|value| *value != "inherit"))
     }
 
+    /// The property of its style by which an element moves and which is not read.
+    pub fn moving(&self, node: Node) -> Option<&'static str> {
+        MOVING.into_iter().find(|property| self.styled(node, property).is_some_and(|value| value != "none"))
+    }
+
+    /// Whether an element and all in it takes no room.
+    pub fn is_away(&self, node: Node) -> bool {
+        self.own(node, "display").is_some_and(|value| value.eq_ignore_ascii_case("none"))
+    }
+
     /// Why an element and all in it is not shown: `display` or `opacity`. An opacity that changes counts as shown.
     pub fn hides(&self, node: Node) -> Option<&'static str> {
-        if self.own(node, "display") == Some("none") {
+        if self.is_away(node) {
             return Some("display: none");
         }
         let transparent = self.own(node, "opacity").is_some_and(|text| number(text) == Some(0.0));
@@ -117,13 +114,6 @@ impl Styles {
         let opaque = self.inherited(node, "fill-opacity").and_then(number) != Some(0.0);
         opaque && !matches!(self.inherited(node, "fill"), Some("none" | "transparent"))
     }
-
-    /// The transformations of an element as those of the attribute `transform` are written; `None` without any.
-    pub fn transform(&self, node: Node) -> Option<String> {
-        let own = self.own(node, "transform").filter(|text| *text != "none")?;
-        // CSS has units, which the attribute lacks.
-        Some(own.replace("px", "").replace("deg", ""))
-    }
 }
 
 fn number(text: &str) -> Option<f64> {
@@ -137,10 +127,26 @@ fn is_animated(node: Node, attribute: &str) -> bool {
     })
 }
 
-fn without_comments(sheet: &str) -> String {
-    let mut pieces = sheet.split("/*");
-    let first = pieces.next().unwrap_or("").to_owned();
-    pieces.fold(first, |text, piece| text + piece.split_once("*/").map_or("", |(_, after)| after))
+/// The sheet in an element. What is for print alone says nothing here.
+fn sheet(node: Node) -> Sheet {
+    let kind = node.attribute("type").unwrap_or("").trim();
+    let media = node.attribute("media").unwrap_or("").trim();
+    if !kind.is_empty() && !kind.eq_ignore_ascii_case("text/css") {
+        return Sheet { unread: vec![format!("type='{kind}'")], ..Sheet::default() };
+    }
+    if !media.split(',').any(|media| MEDIA.contains(&media.trim())) {
+        return Sheet { unread: vec![format!("media='{media}'")], ..Sheet::default() };
+    }
+    let texts: String = node.children().filter_map(|child| child.text()).collect();
+    Sheet::read(&texts)
+}
+
+/// Texts as a message lists them.
+fn listed(texts: &[String]) -> String {
+    const MOST: usize = 5;
+    let first: Vec<String> = texts.iter().take(MOST).map(|text| quoted(Some(text))).collect();
+    let more = texts.len().saturating_sub(MOST);
+    first.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
 #[cfg(test)]
@@ -156,14 +162,39 @@ mod tests {
 
     #[test]
     fn the_strongest_declaration_counts() {
-        let sheet =
-            "<style>/* .a{fill:none} */ path { fill: red } #b{fill:none}.a, g > p{fill:blue !important}</style>";
+        let sheet = "<style>/* .a{fill:none} */ path { fill: red } #b{fill:none}.a, g > p{fill:blue}</style>";
         let fill =
             |path: &str| asked(&format!("{sheet}{path}"), |styles, node| styles.own(node, "fill").map(str::to_owned));
         assert_eq!(fill("<path fill='none'/>").as_deref(), Some("red"));
         assert_eq!(fill("<path class='x a'/>").as_deref(), Some("blue"));
         assert_eq!(fill("<path class='a' id='b'/>").as_deref(), Some("none"));
         assert_eq!(fill("<path class='a' id='b' style='Fill : green; x'/>").as_deref(), Some("green"));
+        let important = "<style>.i{fill:one !important;fill:two} path.i{fill:three} #b{fill:four!important}</style>";
+        let fill = |path: &str| {
+            asked(&format!("{important}{path}"), |styles, node| styles.own(node, "fill").map(str::to_owned))
+        };
+        assert_eq!(fill("<path class='i' style='fill:own'/>").as_deref(), Some("one"));
+        assert_eq!(fill("<path class='i' style='fill:own !important;fill:none'/>").as_deref(), Some("own"));
+        assert_eq!(fill("<path class='i' id='b'/>").as_deref(), Some("four"));
+    }
+
+    #[test]
+    fn what_is_not_read_is_told_with_its_place() {
+        let text = "<?xml-stylesheet href='a.css'?><svg><style>a + b{fill:none}</style>\n<style media='print'/><style type='text/less'/></svg>";
+        let told = Styles::of(&Document::parse(text).unwrap()).unread.lines(text);
+        assert_eq!(
+            told,
+            [
+                "line 1, column 1: the style sheet in another file is not read",
+                "line 1, column 37: not read of the style sheet: \"a + b\"",
+                "line 2, column 1: not read of the style sheet: \"media='print'\"",
+                "line 2, column 23: not read of the style sheet: \"type='text/less'\"",
+            ]
+        );
+        let many: Vec<String> = (0..7).map(|k| k.to_string()).collect();
+        assert_eq!(listed(&many), "\"0\", \"1\", \"2\", \"3\", \"4\" and 2 more");
+        let moving = asked("<path style='rotate:3deg' rotate='4'/>", Styles::moving);
+        assert_eq!((moving, asked("<path rotate='4'/>", Styles::moving)), (Some("rotate"), None));
     }
 
     #[test]
@@ -180,7 +211,5 @@ mod tests {
         let filled = |content: &str| asked(content, Styles::is_filled);
         assert!(filled("<path/>") && filled("<g fill='none'><path fill='#f00'/></g>"));
         assert!(!filled("<g fill='none'><path fill='inherit'/></g>") && !filled("<path fill-opacity='0'/>"));
-        let moved = asked("<path style='transform:translate(50px,60px) rotate(3deg)'/>", Styles::transform);
-        assert_eq!(moved.as_deref(), Some("translate(50,60) rotate(3)"));
     }
 }

@@ -5,6 +5,7 @@
 
 use super::ImportError;
 use super::problem::quoted;
+use super::svg_length::{Along, length, scaled};
 use rototoon_base::scene::Footage;
 use roxmltree::Node;
 use std::str::FromStr;
@@ -16,8 +17,8 @@ const PROPORTIONS: f64 = 0.005;
 /// Width and height of the part of the plane that an element shows, in its own units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct View {
-    width: f64,
-    height: f64,
+    pub width: f64,
+    pub height: f64,
 }
 
 fn view_box(node: Node) -> Result<Option<ViewBox>, ImportError> {
@@ -33,7 +34,7 @@ fn view_box(node: Node) -> Result<Option<ViewBox>, ImportError> {
 pub(super) fn viewed(root: Node, footage: &Footage) -> Result<(View, Transform), ImportError> {
     let view = match view_box(root)? {
         Some(view) => view,
-        None => match (pixels(root, "width")?, pixels(root, "height")?) {
+        None => match (side(root, "width")?, side(root, "height")?) {
             (Some(width), Some(height)) => ViewBox::new(0.0, 0.0, width, height),
             _ => ViewBox::new(0.0, 0.0, footage.width as f64, footage.height as f64),
         },
@@ -51,10 +52,14 @@ pub(super) fn viewed(root: Node, footage: &Footage) -> Result<(View, Transform),
 
 /// What a nested `svg` shows, and the transformation from its units to those around it. `outer` is what is shown there.
 pub(super) fn nested(node: Node, outer: &View) -> Result<(View, Transform), ImportError> {
-    let place = |name: &str| Ok::<_, ImportError>(super::problem::number(node, name)?.unwrap_or_default());
-    let (x, y) = (place("x")?, place("y")?);
-    let width = pixels(node, "width")?.unwrap_or(outer.width);
-    let height = pixels(node, "height")?.unwrap_or(outer.height);
+    let place =
+        |name: &str, along| node.attribute(name).map_or(Ok(0.0), |text| read(node, name, length(text, outer, along)));
+    let (x, y) = (place("x", Along::X)?, place("y", Along::Y)?);
+    let size = |name: &str, along| {
+        let text = node.attribute(name).filter(|text| text.trim() != "auto").unwrap_or("100%");
+        read(node, name, length(text, outer, along).filter(|side| *side > 0.0))
+    };
+    let (width, height) = (size("width", Along::X)?, size("height", Along::Y)?);
     let Some(view) = view_box(node)? else {
         return Ok((View { width, height }, Transform::new(1.0, 0.0, 0.0, 1.0, x, y)));
     };
@@ -86,14 +91,16 @@ fn shares(align: Align) -> [f64; 2] {
     }
 }
 
-/// A length in pixels; `None` if the attribute is missing or a percentage.
-fn pixels(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
-    let Some(text) = node.attribute(name) else { return Ok(None) };
-    let text = text.trim();
-    let plain = text.strip_suffix("px").unwrap_or(text);
-    match plain.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(Some(value)),
-        _ if text.ends_with('%') => Ok(None),
-        _ => Err(ImportError::at(node, format!("{name}: found {text:?}, expected pixels"))),
-    }
+/// A side of the document in pixels; `None` if the attribute is missing or a share of what is around the document.
+fn side(node: Node, name: &str) -> Result<Option<f64>, ImportError> {
+    let text = node.attribute(name).map(str::trim).filter(|text| *text != "auto" && !text.ends_with('%'));
+    text.map(|text| read(node, name, scaled(text, 0.0).filter(|side| *side > 0.0))).transpose()
+}
+
+/// A length that was read.
+fn read(node: Node, name: &str, length: Option<f64>) -> Result<f64, ImportError> {
+    let found = || quoted(node.attribute(name));
+    length.ok_or_else(|| {
+        ImportError::at(node, format!("{name}: found {}, expected pixels or a length such as 5mm", found()))
+    })
 }
