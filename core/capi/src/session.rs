@@ -401,13 +401,8 @@ fn summary(scene: &Scene, tracking: &Tracking) -> String {
         parts: found.parts.map(|part| scene.parts[part].name.as_str()),
         frames: &found.frames,
     });
-    json!(Summary {
-        jobs: jobs.collect(),
-        ends: ends.collect(),
-        exchanges: exchanges.collect(),
-        unseen: unseen(scene)
-    })
-    .to_string()
+    json!(Summary { jobs: jobs.collect(), ends: ends.collect(), exchanges: exchanges.collect(), unseen: unseen(scene) })
+        .to_string()
 }
 
 /// The parts that can probably not be seen on some frames.

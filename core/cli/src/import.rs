@@ -3,7 +3,6 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
-use rototoon::file;
 use rototoon::import::ImportError;
 use rototoon::pipeline::{self, Imported, PipelineError, ShapeFormat};
 use rototoon::project::Document;
@@ -138,7 +137,8 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern) -> 
 /// Puts the shapes of a file into the document.
 fn read(given: &ArgMatches, document: &mut Document, shapes: &Shapes) -> Result<Imported, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.path.display()));
-    let text = file::text(&shapes.path).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
+    let text =
+        pipeline::shapes_text(&shapes.path).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
     pipeline::import_shifted(document, &text, shapes.format, shapes.offset).map_err(|error| match error {
         PipelineError::Import(ImportError::Beyond(_)) => {
             failed(&format!("{error}; --frame-offset says how far the file's frames are ahead of the document's"))

@@ -17,6 +17,7 @@
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
+//! - `encoding`: files that are not UTF-8
 //! - `extent`: of which frames a file speaks
 //! - `hidden`: frames on which a shape is not shown
 //! - `merge`: shapes into a scene, without a change where nothing was changed
@@ -27,6 +28,7 @@
 
 pub mod bvh;
 mod channel;
+mod encoding;
 mod extent;
 pub mod fusion;
 mod hidden;
@@ -52,6 +54,7 @@ mod svg_style;
 mod svg_transform;
 mod svg_view;
 
+pub use encoding::foreign_encoding;
 pub use extent::Extent;
 pub use limits::too_large;
 pub use merge::{Change, Merged, Taken, into_scene};

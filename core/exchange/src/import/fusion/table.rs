@@ -91,7 +91,9 @@ impl<'a> Value<'a> {
 
 /// Reads the value that a file is. A word and `=` before it, as in `return` or `Composition`, count to it.
 pub fn value(text: &str) -> Result<Value<'_>, ImportError> {
-    let mut reader = Reader { text, at: 0, count: 0 };
+    // A mark of its encoding may stand before the text.
+    let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+    let mut reader = Reader { text, at, count: 0 };
     let value = reader.value(0)?;
     reader.skip();
     match reader.peek() {
@@ -275,6 +277,8 @@ mod tests {
         assert_eq!(mask.get("b.c").unwrap().text(), Some("x \\\" y"));
         let listed = mask.listed().next().unwrap();
         assert_eq!((listed.word(), listed.listed().next().unwrap().text()), ("FuID", Some("Fast")));
+        let marked = value("\u{feff}{ a = 1 }").unwrap();
+        assert_eq!(marked.get("a").and_then(Value::number), Some(1.0), "a mark of the encoding before it");
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! - B-splines are uniform and cubic. The ends of an open one are repeated three times, so the curve reaches them.
 //! - Layers may have a transformation, which is applied here (`matrix`). A shape then also has keys where it turns.
 //! - Keys beyond the footage are left out (`range`).
+//! - A shape that cannot be read is left out with a warning, such as an X-spline. If there is no other one, its error is that of the file.
 //! - Hidden shapes, and those in hidden layers, are left out with a warning. A shape is hidden where its opacity is 0; other
 //!   opacities are ignored.
 //! - Shapes that are inverted or not added to those below come in as they are drawn, with a warning.
@@ -52,11 +53,15 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
         shapes: Vec::new(),
         left_out: LeftOut::default(),
         omitted: false,
+        refused: None,
         reach: Reach::new(),
     };
     reader.walk(root, &mut Vec::new())?;
     reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
     if reader.shapes.is_empty() && !reader.omitted {
+        if let Some(refused) = reader.refused {
+            return Err(refused);
+        }
         return Err(ImportError::Nothing("an <Object type=\"Shape\"> that is not hidden"));
     }
     reader.shapes.reverse();
@@ -74,6 +79,8 @@ struct Reader<'a> {
     left_out: LeftOut,
     /// Whether a shape was left out that is not hidden.
     omitted: bool,
+    /// The error of the first shape that cannot be read.
+    refused: Option<ImportError>,
     reach: Reach<ImportError>,
 }
 
@@ -128,7 +135,14 @@ impl Reader<'_> {
         }
         match self.shape(node, layers) {
             Ok(shape) => self.shapes.push(shape),
-            Err(Fault::Wrong(error)) => return Err(error),
+            // A shape of another kind, such as an X-spline, keeps no other one out.
+            Err(Fault::Wrong(error)) => match &error {
+                ImportError::Element { element, message, .. } if !self.points.spent => {
+                    self.left_out.push(node, format!("the shape {label:?} is left out: <{element}>: {message}"));
+                    self.refused.get_or_insert(error);
+                }
+                _ => return Err(error),
+            },
             Err(Fault::Omitted(reason)) => {
                 self.omitted = true;
                 self.left_out.push(node, format!("the shape {label:?} is left out: {reason}"));

@@ -169,6 +169,25 @@ fn layers_move_their_shapes_from_the_inside_out() {
 }
 
 #[test]
+fn a_shape_of_another_kind_keeps_no_other_one_out() {
+    let points = ["(0,0)", "(0.1,0)", "(0,0.1)"];
+    let shape = |label: &str, path: &str| file(&format!("label=\"{label}\""), path);
+    let good = shape("good", &key(0, "Bezier", &points));
+    let object = |text: &str| text[text.find("<Object").unwrap()..text.rfind("</Object>").unwrap() + 9].to_owned();
+    for (kind, points, said) in [
+        ("Xspline", &points[..], "<Path>: type: found \"Xspline\", expected \"Bezier\" or \"Bspline\""),
+        ("Circle", &points, "<Path>: type: found \"Circle\""),
+        ("Bezier", &["(NaN,0)"], "<Point>: found \"(NaN,0)\", expected (x,y)"),
+    ] {
+        let bad = object(&shape("x", &key(0, kind, points)));
+        let found = silhouette(&good.replace("</Object>", &format!("</Object>{bad}")), &FOOTAGE()).unwrap();
+        assert_eq!((found.shapes.len(), found.shapes[0].name.as_str()), (1, "good"));
+        let told = format!("the shape \"x\" is left out: {said}");
+        assert!(found.warnings.len() == 1 && found.warnings[0].contains(&told), "{:?}", found.warnings);
+    }
+}
+
+#[test]
 fn what_cannot_be_placed_is_left_out_and_told() {
     let horizon = matrix("<Value>(1,0,0,-9,0,1,0,0,0,0,1,0,0,0,0,1)</Value>");
     for (layer, said) in [
