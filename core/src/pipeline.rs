@@ -20,6 +20,7 @@ mod guesses;
 mod holds;
 mod imported;
 mod keeping;
+mod left_out;
 pub mod memory;
 mod outdated;
 mod outside;
@@ -58,6 +59,7 @@ pub use gaps::held_gaps;
 pub use guesses::{guessed_translation, guesses};
 pub use imported::Imported;
 pub use keeping::Earlier;
+pub use left_out::{left_out_of_shapes, squeezed};
 pub use outdated::outdated;
 pub use outside::outside;
 pub use paint::{Cels, undrawn};
@@ -307,40 +309,6 @@ pub fn export_fusion(document: &Document, options: impl Into<ShapeOptions>) -> S
 pub fn pixel_aspect(document: &Document, folder: &Path) -> f64 {
     let Ok(sequence) = frames(document, folder) else { return 1.0 };
     f64::from(sequence.pixel_aspect(document.scene.footage.first))
-}
-
-/// What is told if a form does not say that the pixels of the footage are not square.
-pub fn squeezed(pixel_aspect: f64, extension: &str) -> Option<String> {
-    let lost = pixel_aspect != 1.0 && !export::has_pixel_aspect(extension);
-    lost.then(|| {
-        format!("the pixels of the footage are {pixel_aspect} times as wide as high, and the file does not say so")
-    })
-}
-
-/// What shapes for other programs leave out, as a message for the user; `None` if they have everything. Other programs let a
-/// border fade outward from the contour, or alike all around. Neither is the feather of control points. Some have a falloff for
-/// such a feather, and some lack characters of names. None has an order of parts that changes. In SVG a stroke has one width along it. `extension`, in small letters, names the form.
-pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String> {
-    let soft = document.scene.parts.iter().filter(|part| part.soft_widths().is_some());
-    let names: Vec<String> = soft.map(|part| format!("{:?}", part.name)).collect();
-    let feather = (!names.is_empty())
-        .then(|| format!("the shapes are sharp: the file has no feather of the points of {}", names.join(", ")));
-    let other = document.scene.parts.iter().filter(|part| !export::has_falloff(extension, part.falloff));
-    let names: Vec<String> = other.map(|part| format!("{:?}", part.name)).collect();
-    let falloff = (!names.is_empty())
-        .then(|| format!("the file has no such falloff, or only its rate, as that of {}", names.join(", ")));
-    // Only what is written can have another name there.
-    let bare = |name: &str| document.scene.part_index(name).is_ok_and(|k| document.scene.parts[k].is_bare());
-    let renamed = export::renamed(&document.scene, extension).into_iter().filter(|(own, _)| !bare(own));
-    let renamed: Vec<String> = renamed.map(|(own, there)| format!("{own:?} is {there:?} there")).collect();
-    let names = (!renamed.is_empty()).then(|| format!("the file cannot have some names: {}", renamed.join(", ")));
-    let ordered = document.scene.parts.iter().filter(|part| part.depths.values().any(|depth| *depth != part.depth));
-    let names: Vec<String> = ordered.map(|part| format!("{:?}", part.name)).collect();
-    let order = (!names.is_empty())
-        .then(|| format!("the file has one order of parts for all frames, and {} changes its depth", names.join(", ")));
-    let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
-    let told: Vec<String> = feather.into_iter().chain(falloff).chain(names).chain(order).chain(varying).collect();
-    (!told.is_empty()).then(|| told.join("; "))
 }
 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names
