@@ -3,7 +3,10 @@
 //! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
 //! - `svg_animation`: the keys of animated paths
+//! - `svg_edited`: what a drawing program has changed in an animated path
+//! - `svg_holes`: holes of paths
 //! - `svg_length`: lengths with units
+//! - `svg_lost`: holes, clips and masks that are lost
 //! - `svg_outline`: outlines of elements
 //! - `svg_selector`: which elements a rule of a style sheet is for
 //! - `svg_sheet`: style sheets
@@ -46,7 +49,10 @@ mod range;
 pub mod silhouette;
 pub mod svg;
 mod svg_animation;
+mod svg_edited;
+mod svg_holes;
 mod svg_length;
+mod svg_lost;
 mod svg_outline;
 mod svg_selector;
 mod svg_sheet;

@@ -97,6 +97,11 @@ impl Path {
         std::iter::once(&mut self.start).chain(self.segments.iter_mut().flatten())
     }
 
+    /// All its points.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        std::iter::once(self.start).chain(self.segments.iter().flatten().copied())
+    }
+
     /// Moves its points a share of the way to those of another path.
     pub fn go(&mut self, to: &Self, share: f64) {
         self.start = self.start.lerp(to.start, share);

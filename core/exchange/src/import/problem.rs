@@ -80,7 +80,12 @@ pub(super) struct LeftOut(Vec<(usize, String)>);
 
 impl LeftOut {
     pub(super) fn push(&mut self, node: Node, reason: String) {
-        self.0.push((node.range().start, reason));
+        self.push_at(node.range().start, reason);
+    }
+
+    /// Adds what begins at a byte of the text.
+    pub(super) fn push_at(&mut self, start: usize, reason: String) {
+        self.0.push((start, reason));
     }
 
     /// A line for each element, with its place in the text. All places are found in one pass over the text, since a
@@ -122,6 +127,15 @@ pub(super) fn quoted(text: Option<&str>) -> String {
     }
 }
 
+/// Texts as a message lists them.
+pub(super) fn listed(texts: &[String]) -> String {
+    let first: Vec<String> = texts.iter().take(LISTED).map(|text| quoted(Some(text))).collect();
+    let more = texts.len().saturating_sub(LISTED);
+    first.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
+/// Greatest number of texts of a list.
+const LISTED: usize = 5;
 /// Greatest number of characters of a quotation.
 const QUOTED: usize = 40;
 

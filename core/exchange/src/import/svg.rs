@@ -24,11 +24,15 @@ use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, parsed};
 use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
+use super::svg_edited::{Edit, edit};
+use super::svg_holes::{Bound, bounds};
+use super::svg_lost::{Cause, Clips, Cover, Lost, clips, covers};
 use super::svg_outline::{outline, paths};
 use super::svg_style::Styles;
 use super::svg_transform::{Places, joined, moved};
 use super::svg_view::{View, nested, viewed};
 use super::{ImportError, Shape, Shapes};
+use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use svgtypes::Transform;
@@ -61,11 +65,12 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
         return Err(ImportError::at(root, "expected <svg>, the root of an SVG document"));
     }
     let (view, over) = viewed(root, footage)?;
-    let styles = Styles::of(&document);
+    let (styles, clips) = (Styles::of(&document), clips(&document));
     let film = film(root, footage);
     let still = film.as_ref().map_or(still, |film| still.clamp(film.first, film.last));
     let read = |strokes| {
-        let mut reader = Reader::new(film.as_ref().unwrap_or(footage), still, strokes, &styles);
+        let mut reader = Reader::new(film.as_ref().unwrap_or(footage), still, &styles, &clips);
+        reader.strokes = strokes;
         reader.is_film = film.is_some();
         if styles.own(root, "transform").is_some_and(|text| text != "none") {
             reader.left_out.push(root, "the transformation of the whole document is not read".to_owned());
@@ -85,6 +90,7 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
             _ => "one beside the painted regions that Rototoon has written, which are no parts",
         }));
     }
+    reader.lost.tell(&mut reader.left_out);
     let mut warnings = reader.left_out.lines(text);
     warnings.extend(reader.drawn.told());
     Ok(Shapes { shapes: reader.shapes, warnings })
@@ -133,10 +139,17 @@ struct Reader<'a> {
     drawn: Drawn,
     /// The error of the first element that cannot be read.
     refused: Option<ImportError>,
+    clips: &'a Clips<'a>,
+    /// The clips and masks of the elements around.
+    covers: Vec<Cover>,
+    lost: Lost,
 }
 
+/// The sub-paths of an element on its keys.
+type Frames = Vec<(FrameNumber, Vec<Path>)>;
+
 impl<'a> Reader<'a> {
-    fn new(footage: &'a Footage, still: FrameNumber, strokes: bool, styles: &'a Styles) -> Self {
+    fn new(footage: &'a Footage, still: FrameNumber, styles: &'a Styles, clips: &'a Clips<'a>) -> Self {
         Self {
             footage,
             styles,
@@ -145,10 +158,13 @@ impl<'a> Reader<'a> {
             names: Names::default(),
             points: Points::all(),
             left_out: styles.unread.clone(),
-            strokes,
+            strokes: false,
             is_film: false,
             drawn: Drawn::default(),
             refused: None,
+            clips,
+            covers: Vec::new(),
+            lost: Lost::default(),
         }
     }
 
@@ -178,6 +194,15 @@ impl<'a> Reader<'a> {
     /// Reads an element and all in it.
     fn element(&mut self, node: Node, view: &View, outer: Transform) -> Result<(), ImportError> {
         let inner = joined(outer, self.own_transform(node, view)?);
+        let around = self.covers.len();
+        self.covers.extend(covers(node, self.styles, self.clips, view, inner));
+        let read = self.within(node, view, inner);
+        self.covers.truncate(around);
+        read
+    }
+
+    /// Reads an element that is placed.
+    fn within(&mut self, node: Node, view: &View, inner: Transform) -> Result<(), ImportError> {
         match (outline(node, self.styles, view)?, node.tag_name().name()) {
             (Some(text), _) => self.shape(node, &text, inner),
             (None, "svg") => {
@@ -232,33 +257,24 @@ impl<'a> Reader<'a> {
     }
 
     fn shape(&mut self, node: Node, text: &str, transform: Transform) -> Result<(), ImportError> {
-        let keys = match keyed(node, self.footage)? {
-            Some(found) => {
-                if let Some(told) = found.kept.told(&name(node), self.footage) {
-                    self.left_out.push(node, told);
-                }
-                found.keys
-            }
-            None => vec![Keyed { frame: self.still, text: text.to_owned(), toward: None }],
-        };
-        let (keys, hidden) = (of_artist(node, keys), hidden_times(node, self.footage));
+        let found = keyed(node, self.footage)?;
+        if let Some(told) = found.as_ref().and_then(|found| found.kept.told(&name(node), self.footage)) {
+            self.left_out.push(node, told);
+        }
+        let own_film = self.is_film && found.is_some();
+        let still = || vec![Keyed { frame: self.still, text: text.to_owned(), toward: None }];
+        let keys = of_artist(node, found.map_or_else(still, |found| found.keys));
         let frames = keys.iter().map(|key| Ok((key.frame, self.placed(node, key, transform)?)));
-        let frames = frames.collect::<Result<Vec<_>, ImportError>>()?;
-        let Some((first, start)) = frames.first() else { return Ok(()) };
-        for number in 0..start.len() {
-            let own: Vec<Path> = frames.iter().filter_map(|(_, paths)| paths.get(number).cloned()).collect();
-            let unequal = || {
-                let message =
-                    format!("found paths of several kinds, expected the commands of frame {first} on each key");
-                ImportError::at(node, message)
-            };
-            if own.len() != frames.len() {
-                return Err(unequal());
-            }
-            let contours = contours(&own, |count| self.points.take(count, node)).map_err(|error| match error {
-                NoContours::Unequal => unequal(),
-                NoContours::Refused(error) => error,
-            })?;
+        let mut frames = frames.collect::<Result<Frames, ImportError>>()?;
+        if own_film {
+            self.take_edit(node, text, transform, &mut frames)?;
+        }
+        let Some((_, start)) = frames.first() else { return Ok(()) };
+        let made = self.contours(node, &frames)?;
+        let bounds = self.bounds(node, start, &made);
+        let hidden = hidden_times(node, self.footage);
+        let all = self.shapes.len();
+        for (number, contours) in made.into_iter().enumerate().filter(|(number, _)| bounds[*number] != Bound::Hole) {
             let name = self.names.free(&name(node));
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
             let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
@@ -267,7 +283,81 @@ impl<'a> Reader<'a> {
             let extent = if self.is_film { shape.extent } else { shape.extent.of_drawing() };
             self.shapes.push(Shape { extent, ..shape });
         }
+        self.tell_lost(node, all, bounds.iter().any(|bound| *bound != Bound::Area));
         Ok(())
+    }
+
+    /// The contours of each sub-path on all keys.
+    fn contours(&mut self, node: Node, frames: &Frames) -> Result<Vec<Vec<Vec<Point>>>, ImportError> {
+        let Some((first, start)) = frames.first() else { return Ok(Vec::new()) };
+        let unequal = || {
+            let message = format!("found paths of several kinds, expected the commands of frame {first} on each key");
+            ImportError::at(node, message)
+        };
+        if frames.iter().any(|(_, paths)| paths.len() != start.len()) {
+            return Err(unequal());
+        }
+        let one = |number: usize| {
+            let own: Vec<Path> = frames.iter().map(|(_, paths)| paths[number].clone()).collect();
+            contours(&own, |count| self.points.take(count, node)).map_err(|error| match error {
+                NoContours::Unequal => unequal(),
+                NoContours::Refused(error) => error,
+            })
+        };
+        (0..start.len()).map(one).collect()
+    }
+
+    /// Takes what a drawing program has changed in a film of Rototoon as the form on its first key, or tells why not.
+    fn take_edit(&mut self, node: Node, text: &str, to: Transform, frames: &mut Frames) -> Result<(), ImportError> {
+        let Some((frame, _)) = frames.first() else { return Ok(()) };
+        let key = Keyed { frame: *frame, text: text.to_owned(), toward: None };
+        let shown = self.placed(node, &key, to);
+        if self.points.spent {
+            return shown.map(drop);
+        }
+        let keys: Vec<&[Path]> = frames.iter().map(|(_, paths)| &paths[..]).collect();
+        match shown.as_ref().map_or(Edit::Other, |shown| edit(&keys, shown)) {
+            Edit::None => {}
+            Edit::Moved => frames[0].1 = shown?,
+            Edit::Other => {
+                let told = format!(
+                    "the edit of {:?} on frame {frame} is left out: it has other points than the other frames; export that frame alone to give it others",
+                    name(node)
+                );
+                self.left_out.push(node, told);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the sub-paths of a filled path bound on its first key.
+    fn bounds(&mut self, node: Node, start: &[Path], made: &[Vec<Vec<Point>>]) -> Vec<Bound> {
+        let closed: Vec<usize> = (0..start.len()).filter(|&number| start[number].closed).collect();
+        let mut found = vec![Bound::Area; start.len()];
+        if closed.len() < 2 || !self.styles.is_filled(node) {
+            return found;
+        }
+        let is_even_odd = self.styles.inherited(node, "fill-rule") == Some("evenodd");
+        let contours: Vec<&[Point]> = closed.iter().map(|&number| &made[number][0][..]).collect();
+        match bounds(&contours, is_even_odd) {
+            Some(bounds) => closed.iter().zip(bounds).for_each(|(&number, bound)| found[number] = bound),
+            None => self.lost.add(Cause::Unsought, node, &name(node)),
+        }
+        found
+    }
+
+    /// Tells what is lost of the shapes of an element, which are those from `from` on.
+    fn tell_lost(&mut self, node: Node, from: usize, has_holes: bool) {
+        let shapes = &self.shapes[from..];
+        if let Some(first) = shapes.first().filter(|_| has_holes) {
+            self.lost.add(Cause::Hole, node, &first.name);
+        }
+        for shape in shapes {
+            let points = || shape.keys.values().flatten();
+            for cause in self.covers.iter().filter_map(|cover| cover.hides(points(), self.footage)) {
+                self.lost.add(cause, node, &shape.name);
+            }
+        }
     }
 
     /// The sub-paths of a key, in pixels of the footage.

@@ -6,7 +6,7 @@
 //!
 //! Source: W3C, Scalable Vector Graphics (SVG) 2, chapters on styling and rendering; CSS Cascading and Inheritance Level 4.
 
-use super::problem::{LeftOut, quoted};
+use super::problem::{LeftOut, listed};
 use super::svg_selector::Selector;
 use super::svg_sheet::{READ, Sheet, declarations};
 use roxmltree::{Document, Node};
@@ -139,14 +139,6 @@ fn sheet(node: Node) -> Sheet {
     }
     let texts: String = node.children().filter_map(|child| child.text()).collect();
     Sheet::read(&texts)
-}
-
-/// Texts as a message lists them.
-fn listed(texts: &[String]) -> String {
-    const MOST: usize = 5;
-    let first: Vec<String> = texts.iter().take(MOST).map(|text| quoted(Some(text))).collect();
-    let more = texts.len().saturating_sub(MOST);
-    first.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
 #[cfg(test)]

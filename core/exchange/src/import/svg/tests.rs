@@ -1,5 +1,4 @@
 use super::*;
-use rototoon_base::geometry::Point;
 use rototoon_base::geometry::polygon;
 
 fn footage() -> Footage {
@@ -218,4 +217,94 @@ fn shapes_stand_about_their_origins_and_rules_hide_them() {
     for said in ["of the style sheet: \"a + b\"", "is moved by `rotate` of its style", "of the whole document is not"] {
         assert!(warnings.contains(said), "{warnings}");
     }
+}
+
+#[test]
+fn holes_clips_and_masks_are_told_once_for_each_with_the_names() {
+    let text = "<svg viewBox='0 0 200 100'><defs><clipPath id='eye'><circle r='9'/></clipPath><clipPath id='all'><rect width='200' height='100'/></clipPath>\
+        <mask id='m'/></defs>\n<path id='ring' fill-rule='evenodd' d='M10 10h40v40h-40z M20 20h20v20h-20z'/>\
+        <g style='clip-path:url(#eye)'><path id='pupil' d='M0 0h5v5z'/><g mask='url(#m)'><path id='both' d='M0 0h5v5z'/></g></g>\
+        <path id='frame' d='M60 10h40v40h-40z M70 20v20h20v-20z M75 25h5v5h-5z'/>\
+        <g clip-path='url(\"#all\")'><path id='whole' d='M-50 0h900v50z'/></g><path id='none' clip-path='url(#gone)' d='M0 0h5v5z'/>\
+        <path id='lines' fill='none' d='M10 10h40v40h-40z M20 20h20v20h-20z'/></svg>";
+    let found = svg(text, &footage(), 6).unwrap();
+    let names: Vec<&str> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
+    assert_eq!(names, ["ring", "pupil", "both", "frame", "frame 2", "whole", "none", "lines", "lines 2"]);
+    assert_eq!(found.shapes[4].keys[&6][0], Point::new(75.0, 25.0), "an island in a hole is a part");
+    let told: Vec<&str> = found.warnings.iter().map(|line| line.split_once(": ").unwrap().1).collect();
+    assert_eq!(
+        told,
+        [
+            "holes are left out, since a part has none and covers what shows through them: \"ring\", \"frame\"",
+            "clipping paths are not read, so these shapes come in whole: \"pupil\", \"both\"",
+            "masks are not read, so these shapes come in whole: \"both\"",
+        ]
+    );
+    assert!(found.warnings[0].starts_with("line 2, column 1: "), "{:?}", found.warnings);
+}
+
+#[test]
+fn a_clip_is_told_where_it_hides_something() {
+    let told = |clip: &str, rest: &str| {
+        let text = format!("<svg viewBox='0 0 200 100'><clipPath id='c' {clip}</clipPath>{rest}</svg>");
+        !svg(&text, &footage(), 6).unwrap().warnings.is_empty()
+    };
+    let path = "<path clip-path='url(#c)' d='M10 10h30v30z'/>";
+    assert!(
+        !told("><rect x='10' y='10' width='30' height='30'/>", path)
+            && told("><rect x='10.2' y='10' width='30' height='30'/>", path)
+    );
+    assert!(!told("><rect width='50%' height='50%'/>", path) && told("><rect width='15%' height='50%'/>", path));
+    for other in [
+        "clipPathUnits='objectBoundingBox'><rect width='200' height='100'/>",
+        "><rect width='200' height='100' rx='3'/>",
+        "><rect width='200' height='100' transform='scale(.1)'/>",
+        "><rect width='200' height='100'/><rect width='1' height='1'/>",
+        "><path d='M0 0H200V100H0Z'/>",
+        ">",
+    ] {
+        assert!(told(other, path), "{other}");
+    }
+    // The rectangle is in the units of what it clips.
+    let turned = |angle: u32| {
+        format!("<g transform='translate(100 0) rotate({angle})' clip-path='url(#c)'><path d='M0 0h30v30z'/></g>")
+    };
+    assert!(!told("><rect width='100' height='100'/>", &turned(90)));
+    assert!(
+        told("><rect width='20' height='100'/>", &turned(90))
+            && !told("><rect width='100' height='20'/>", &turned(180))
+    );
+    assert!(told("><rect width='100' height='100'/>", "<path style='clip-path:circle(5px)' d='M0 0h5v5z'/>"));
+}
+
+#[test]
+fn an_edit_of_a_film_of_rototoon_is_the_form_on_its_first_frame() {
+    use crate::export::{SvgOptions, svg as written};
+    let at = |x: f64| vec![Point::new(x, 0.0), Point::new(x + 8.0, 0.0), Point::new(x, 8.0)];
+    let part = rototoon_base::scene::Part {
+        name: "arm".into(),
+        closed: true,
+        keys: [(6, at(1.0)), (8, at(3.0))].into(),
+        tracks: [(6, at(1.0)), (7, at(2.0)), (8, at(3.0))].into(),
+        ..Default::default()
+    };
+    let scene = rototoon_base::scene::Scene { footage: footage(), parts: vec![part] };
+    let text = written(&scene, &SvgOptions::default());
+    let plain = svg(&text, &footage(), 5).unwrap();
+    let edited = |d: &str| svg(&text.replacen("d=\"M1 0L9 0 1 8Z\"", &format!("d=\"{d}\""), 1), &footage(), 5).unwrap();
+    // Another program writes the same form in other words.
+    assert_eq!(edited("m1.001 0h8L1 8z"), plain);
+    let found = edited("M1 -2L9 0 1 8Z");
+    let mut expected = plain.clone();
+    expected.shapes[0].keys.get_mut(&6).unwrap()[0].y = -2.0;
+    assert_eq!(found, expected);
+    for other in ["M1 0L9 0 5 5 1 8Z", "M1 0C4 9 6 9 9 0L1 8Z", "M1 0L9 0 1 8ZM1 1L2 2 3 1Z", "nothing"] {
+        let found = edited(other);
+        assert_eq!(found.shapes, plain.shapes, "{other}");
+        let told = "the edit of \"arm\" on frame 6 is left out: it has other points";
+        assert!(found.warnings.len() == 1 && found.warnings[0].contains(told), "{:?}", found.warnings);
+    }
+    // In the film of another program the animation counts.
+    let foreign = text.replace("data-first", "first").replacen("d=\"M1 0L", "d=\"M1 -2L", 1);
+    assert_eq!(svg(&foreign, &footage(), 5).unwrap().shapes[0].keys[&6], at(1.0));
 }
