@@ -51,7 +51,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let inputs = files.iter().fold(project::inputs(&document, from), |inputs, file| inputs.file(&file.path));
     inputs.check(to)?;
-    project::save(&document, from, to)?;
+    project::save(document, from, to)?;
     if let Some(told) = imported.told() {
         line("note", &format!("{}: {told}", arguments::path(given, "shapes").display()));
     }
