@@ -105,7 +105,8 @@ pub fn import_shifted(
     offset: FrameNumber,
 ) -> Result<Imported, PipelineError> {
     let footage = excerpt::shifted(&document.scene.footage, offset)?;
-    let mut found = shapes(&footage, text, format.shifted(offset))?;
+    let names: Vec<&str> = document.scene.parts.iter().map(|part| part.name.as_str()).collect();
+    let mut found = shapes(&footage, &names, text, format.shifted(offset))?;
     let own = own_names(&document.scene, format.extension());
     for shape in &mut found.shapes {
         shape.move_by(offset.saturating_neg());
@@ -122,10 +123,10 @@ fn own_names(scene: &Scene, extension: &str) -> BTreeMap<String, String> {
     renamed.map(|(own, there)| (there, own.to_owned())).collect()
 }
 
-/// The shapes of a file.
-fn shapes(footage: &Footage, text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
+/// The shapes of a file for a document whose parts have these names.
+fn shapes(footage: &Footage, names: &[&str], text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
     match format {
-        ShapeFormat::Svg { still } => import::svg::svg(text, footage, still),
+        ShapeFormat::Svg { still } => import::svg::svg_of(text, footage, still, names),
         ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage),
         ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
         ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
@@ -172,6 +173,47 @@ mod tests {
             assert_eq!(found.scene, own.scene, "{extension}");
             let told = imported.told().unwrap();
             assert!(told.starts_with("as before ") && !told.contains(';'), "{extension}: {told}");
+        }
+    }
+
+    #[test]
+    fn what_a_program_without_titles_gives_back_finds_its_parts() {
+        let own = document();
+        let text = export::svg(&own.scene, &export::SvgOptions::default());
+        let bare = text.replace("<title>", "<desc>").replace("</title>", "</desc>");
+        let mut found = document();
+        let imported = import_shifted(&mut found, &bare, ShapeFormat::Svg { still: 1 }, 0).unwrap();
+        assert_eq!(found.scene, own.scene);
+        let [told] = &imported.warnings[..] else { panic!("{:?}", imported.warnings) };
+        let pairs = r#"part-0 is "große Hand", part-1 is "a\"b [1]", part-2 is "arm""#;
+        assert!(told.contains("taken by their numbers") && told.ends_with(pairs), "{told}");
+        // Parts of an excerpt have the numbers of the whole document.
+        let asked = excerpt::Excerpt { parts: Some(vec!["arm".into()]), ..excerpt::Excerpt::default() };
+        let some = export::svg(&excerpt::excerpt(&own, &asked).unwrap().scene, &export::SvgOptions::default());
+        let imported =
+            import_shifted(&mut found, &some.replace("title>", "desc>"), ShapeFormat::Svg { still: 1 }, 0).unwrap();
+        assert!(imported.warnings[0].ends_with(r#": part-2 is "arm""#), "{:?}", imported.warnings);
+        assert_eq!(found.scene, own.scene);
+    }
+
+    #[test]
+    fn names_that_differ_in_blanks_come_back_in_every_form() {
+        let mut own = document();
+        for (part, name) in own.scene.parts.iter_mut().zip(["arm", "arm ", " arm"]) {
+            part.name = name.into();
+            let move_by = name.len() as f64 * 10.0 + f64::from(u8::from(name.starts_with(' '))) * 5.0;
+            part.keys.values_mut().chain(part.tracks.values_mut()).flatten().for_each(|p| p.x += move_by);
+        }
+        for (extension, text) in [
+            ("nk", export::nuke(&own.scene, 2.0)),
+            ("ntp", export::natron_project(&own.scene, 2.0)),
+            ("fxs", export::silhouette(&own.scene, 2.0)),
+            ("setting", export::fusion(&own.scene, 2.0)),
+            ("svg", export::svg(&own.scene, &export::SvgOptions::default())),
+        ] {
+            let mut found = own.clone();
+            import_shifted(&mut found, &text, ShapeFormat::of(extension, 1).unwrap(), 0).unwrap();
+            assert_eq!(found.scene, own.scene, "{extension}");
         }
     }
 

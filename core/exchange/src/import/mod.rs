@@ -7,6 +7,7 @@
 //! - `svg_holes`: holes of paths
 //! - `svg_length`: lengths with units
 //! - `svg_lost`: holes, clips and masks that are lost
+//! - `svg_names`: what shapes are called
 //! - `svg_outline`: outlines of elements
 //! - `svg_selector`: which elements a rule of a style sheet is for
 //! - `svg_sheet`: style sheets
@@ -53,6 +54,7 @@ mod svg_edited;
 mod svg_holes;
 mod svg_length;
 mod svg_lost;
+mod svg_names;
 mod svg_outline;
 mod svg_selector;
 mod svg_sheet;

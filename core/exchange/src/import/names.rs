@@ -11,9 +11,10 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// Takes a name that no shape has yet: the requested name, with a number if necessary.
+    /// Takes a name that no shape has yet: the requested name, with a number if necessary. Blanks at its ends stay, since a part may differ from
+    /// another one in these alone.
     pub(super) fn free(&mut self, wanted: &str) -> String {
-        let wanted = if wanted.trim().is_empty() { "shape" } else { wanted.trim() };
+        let wanted = if wanted.trim().is_empty() { "shape" } else { wanted };
         if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();
         }
@@ -35,8 +36,8 @@ mod tests {
     #[test]
     fn names_get_the_first_number_that_is_free() {
         let mut names = Names::default();
-        let found = ["arm", "", "arm 2", " arm ", "", "arm", "arm 2"].map(|wanted| names.free(wanted));
-        assert_eq!(found, ["arm", "shape", "arm 2", "arm 3", "shape 2", "arm 4", "arm 2 2"]);
+        let found = ["arm", " ", "arm 2", "arm ", "", "arm", "arm 2", "arm "].map(|wanted| names.free(wanted));
+        assert_eq!(found, ["arm", "shape", "arm 2", "arm ", "shape 2", "arm 3", "arm 2 2", "arm  2"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //!
 //! Paths, polygons, polylines, lines, rectangles, circles and ellipses become shapes, with their transformations
 //! applied. Each sub-path of a path becomes a shape of its own. The view box of the document is mapped to the footage.
-//! The name of a shape is its `title`, its Inkscape label, or its `id`.
+//! Its names are found in several places (`svg_names`).
 //!
 //! If a path has a SMIL animation of its `d` (`svg_animation`), as written by the export, its shape has a key wherever
 //! its form changes, and where a held form ends. Other shapes have one key, on a frame that the caller gives. An export says in
@@ -27,6 +27,7 @@ use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
 use super::svg_edited::{Edit, edit};
 use super::svg_holes::{Bound, bounds};
 use super::svg_lost::{Cause, Clips, Cover, Lost, clips, covers};
+use super::svg_names::{Called, title};
 use super::svg_outline::{outline, paths};
 use super::svg_style::Styles;
 use super::svg_transform::{Places, joined, moved};
@@ -48,7 +49,7 @@ const KEYS: &str = "data-keys";
 /// Elements that contain others.
 pub(super) const GROUPS: [&str; 4] = ["g", "a", "svg", "switch"];
 /// Elements that have an outline.
-const SHAPES: [&str; 7] = ["path", "polygon", "polyline", "line", "circle", "ellipse", "rect"];
+pub(super) const SHAPES: [&str; 7] = ["path", "polygon", "polyline", "line", "circle", "ellipse", "rect"];
 /// Elements that are drawn but have no outline here.
 pub(super) const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignObject"];
 
@@ -59,6 +60,16 @@ pub(super) const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignO
 ///
 /// An [`ImportError`] names the element and its place.
 pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
+    svg_of(text, footage, still, &[])
+}
+
+/// The same for shapes that may be parts of a document with these names, in its order. A path of an export that has lost its name finds its part by
+/// its number.
+///
+/// # Errors
+///
+/// As for [`svg`].
+pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str]) -> Result<Shapes, ImportError> {
     let document = parsed(text)?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
@@ -70,7 +81,7 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
     let still = film.as_ref().map_or(still, |film| still.clamp(film.first, film.last));
     let read = |strokes| {
         let mut reader = Reader::new(film.as_ref().unwrap_or(footage), still, &styles, &clips);
-        reader.strokes = strokes;
+        (reader.strokes, reader.called) = (strokes, Called::new(&document, parts));
         reader.is_film = film.is_some();
         if styles.own(root, "transform").is_some_and(|text| text != "none") {
             reader.left_out.push(root, "the transformation of the whole document is not read".to_owned());
@@ -91,6 +102,7 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
         }));
     }
     reader.lost.tell(&mut reader.left_out);
+    reader.called.tell(&mut reader.left_out);
     let mut warnings = reader.left_out.lines(text);
     warnings.extend(reader.drawn.told());
     Ok(Shapes { shapes: reader.shapes, warnings })
@@ -139,6 +151,7 @@ struct Reader<'a> {
     drawn: Drawn,
     /// The error of the first element that cannot be read.
     refused: Option<ImportError>,
+    called: Called<'a>,
     clips: &'a Clips<'a>,
     /// The clips and masks of the elements around.
     covers: Vec<Cover>,
@@ -162,6 +175,7 @@ impl<'a> Reader<'a> {
             is_film: false,
             drawn: Drawn::default(),
             refused: None,
+            called: Called::default(),
             clips,
             covers: Vec::new(),
             lost: Lost::default(),
@@ -186,7 +200,7 @@ impl<'a> Reader<'a> {
         if self.points.spent {
             return Err(error);
         }
-        self.left_out.push(node, format!("<{element}> {:?} is left out: {message}", name(node)));
+        self.left_out.push(node, format!("<{element}> {:?} is left out: {message}", self.called.name(node)));
         self.refused.get_or_insert(error);
         Ok(())
     }
@@ -236,7 +250,8 @@ impl<'a> Reader<'a> {
         let invisible = || (!group && self.styles.is_invisible(node)).then_some("visibility: hidden");
         let Some(reason) = self.styles.hides(node).or_else(invisible) else { return false };
         if group || SHAPES.contains(&element) {
-            self.left_out.push(node, format!("the hidden <{element}> {:?} is left out ({reason})", name(node)));
+            self.left_out
+                .push(node, format!("the hidden <{element}> {:?} is left out ({reason})", self.called.name(node)));
         }
         true
     }
@@ -245,12 +260,14 @@ impl<'a> Reader<'a> {
     fn own_transform(&mut self, node: Node, view: &View) -> Result<Transform, ImportError> {
         let moves = |child: &Node| ["animateTransform", "animateMotion"].contains(&child.tag_name().name());
         if node.children().any(|child| moves(&child)) {
-            let told =
-                format!("{:?} moves by an animated transformation, which is not read: it stands still", name(node));
+            let told = format!(
+                "{:?} moves by an animated transformation, which is not read: it stands still",
+                self.called.name(node)
+            );
             self.left_out.push(node, told);
         }
         if let Some(property) = self.styles.moving(node) {
-            let told = format!("{:?} is moved by `{property}` of its style, which is not read", name(node));
+            let told = format!("{:?} is moved by `{property}` of its style, which is not read", self.called.name(node));
             self.left_out.push(node, told);
         }
         Places { styles: self.styles, points: &mut self.points }.own(node, view)
@@ -258,7 +275,7 @@ impl<'a> Reader<'a> {
 
     fn shape(&mut self, node: Node, text: &str, transform: Transform) -> Result<(), ImportError> {
         let found = keyed(node, self.footage)?;
-        if let Some(told) = found.as_ref().and_then(|found| found.kept.told(&name(node), self.footage)) {
+        if let Some(told) = found.as_ref().and_then(|found| found.kept.told(&self.called.name(node), self.footage)) {
             self.left_out.push(node, told);
         }
         let own_film = self.is_film && found.is_some();
@@ -275,7 +292,8 @@ impl<'a> Reader<'a> {
         let hidden = hidden_times(node, self.footage);
         let all = self.shapes.len();
         for (number, contours) in made.into_iter().enumerate().filter(|(number, _)| bounds[*number] != Bound::Hole) {
-            let name = self.names.free(&name(node));
+            let name = self.names.free(&self.called.name(node));
+            self.called.took(node, &name);
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
             let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
             never.into_iter().for_each(|never| self.left_out.push(node, never));
@@ -322,7 +340,7 @@ impl<'a> Reader<'a> {
             Edit::Other => {
                 let told = format!(
                     "the edit of {:?} on frame {frame} is left out: it has other points than the other frames; export that frame alone to give it others",
-                    name(node)
+                    self.called.name(node)
                 );
                 self.left_out.push(node, told);
             }
@@ -341,7 +359,7 @@ impl<'a> Reader<'a> {
         let contours: Vec<&[Point]> = closed.iter().map(|&number| &made[number][0][..]).collect();
         match bounds(&contours, is_even_odd) {
             Some(bounds) => closed.iter().zip(bounds).for_each(|(&number, bound)| found[number] = bound),
-            None => self.lost.add(Cause::Unsought, node, &name(node)),
+            None => self.lost.add(Cause::Unsought, node, &self.called.name(node)),
         }
         found
     }
@@ -396,11 +414,20 @@ enum Written {
     Stroke,
 }
 
-/// What an element of an export is. The title of a region is the name of its colour, if that has one.
+/// What an element of an export is. The title of a region is the name of its colour, if that has one. Programs that drop titles keep the groups.
 fn drawn(node: Node) -> Option<Written> {
-    let (id, title) = (node.attribute("id")?, title(node)?);
-    let words: Vec<&str> = title.split(' ').collect();
+    let id = node.attribute("id")?;
     let number = |text: &str| text.parse::<i64>().is_ok();
+    let Some(title) = title(node).filter(|title| !title.trim().is_empty()) else {
+        let within = |group: &str| node.ancestors().any(|around| around.attribute("id") == Some(group));
+        let is = |before: &str| id.strip_prefix(before).is_some_and(number);
+        return match () {
+            () if is("fill-") && within("paint") => Some(Written::Region),
+            () if is("stroke-") && within("lines") => Some(Written::Stroke),
+            () => None,
+        };
+    };
+    let words: Vec<&str> = title.split(' ').collect();
     if node.has_attribute("data-colour") && id.strip_prefix("fill-").is_some_and(number) {
         return Some(Written::Region);
     }
@@ -411,15 +438,6 @@ fn drawn(node: Node) -> Option<Written> {
         }
         _ => None,
     }
-}
-
-fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
-    node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text())
-}
-
-fn name(node: Node) -> String {
-    let label = || node.attributes().find(|attribute| attribute.name() == "label").map(|attribute| attribute.value());
-    title(node).or_else(label).or_else(|| node.attribute("id")).unwrap_or("").to_owned()
 }
 
 #[cfg(test)]

@@ -67,14 +67,8 @@ pub struct Merged {
 pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
     let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for (place, part) in scene.parts.iter().enumerate() {
-        places.entry(part.name.clone()).or_insert(place);
-    }
-    // Files have no blanks at the ends of names.
-    for (place, part) in scene.parts.iter().enumerate() {
-        places.entry(part.name.trim().to_owned()).or_insert(place);
-    }
+    let mut places = places(&scene.parts, &shapes);
+    let named: BTreeSet<String> = shapes.iter().map(|shape| shape.name.clone()).collect();
     let mut merged = Merged::default();
     let mut found = Vec::with_capacity(shapes.len());
     for mut shape in shapes {
@@ -92,9 +86,11 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
                 (part.name.clone(), update(part, shape, &scene.footage))
             }
             None => {
-                let name = shape.name.clone();
+                let plain = shape.name.trim().to_owned();
+                let is_taken = places.contains_key(&plain) || named.contains(&plain);
+                let name = if is_taken { shape.name.clone() } else { plain };
                 places.insert(name.clone(), scene.parts.len());
-                scene.parts.push(Part { depth, ..part_of(shape) });
+                scene.parts.push(Part { name: name.clone(), depth, ..part_of(shape) });
                 depth += 1.0;
                 (name, beside.map_or(Change::New, Change::Beside))
             }
@@ -107,6 +103,27 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
     let moved = order::put(&mut scene.parts, &found);
     merged.moved = moved.into_iter().map(|place| scene.parts[place].name.clone()).collect();
     merged
+}
+
+/// The places of the parts that shapes name. A name counts as it stands. Some files have no blanks at the ends of names, or others: a part that no
+/// shape names as it stands is found without them, if that is clear.
+fn places(parts: &[Part], shapes: &[Shape]) -> BTreeMap<String, usize> {
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    for (place, part) in parts.iter().enumerate() {
+        places.entry(part.name.clone()).or_insert(place);
+    }
+    let named: BTreeSet<&str> = shapes.iter().map(|shape| shape.name.as_str()).collect();
+    let mut plain: BTreeMap<&str, (Vec<usize>, Vec<&str>)> = BTreeMap::new();
+    let open = parts.iter().enumerate().filter(|(_, part)| !named.contains(part.name.as_str()));
+    open.for_each(|(place, part)| plain.entry(part.name.trim()).or_default().0.push(place));
+    let unknown: Vec<&str> = named.iter().copied().filter(|name| !places.contains_key(*name)).collect();
+    unknown.into_iter().for_each(|name| plain.entry(name.trim()).or_default().1.push(name));
+    for (own, names) in plain.into_values() {
+        if let ([place], [name]) = (&own[..], &names[..]) {
+            places.insert((*name).to_owned(), *place);
+        }
+    }
+    places
 }
 
 /// The frames with contours of a part of which the file does not speak.

@@ -89,6 +89,30 @@ fn frames_between_the_keys_of_the_file_are_as_it_shows_them() {
 }
 
 #[test]
+fn names_that_differ_in_blanks_alone_are_not_swapped() {
+    let named = |name: &str| Part { name: name.into(), ..tracked() };
+    let taken = |parts: &[&str], shapes: &[&str]| -> Vec<(String, bool)> {
+        let mut scene = Scene { footage: footage(), parts: parts.iter().map(|name| named(name)).collect() };
+        let shapes = shapes.iter().map(|name| Shape { name: (*name).into(), ..written(&tracked()) }).collect();
+        into_scene(&mut scene, shapes)
+            .taken
+            .into_iter()
+            .map(|taken| (taken.name, taken.change == Change::New))
+            .collect()
+    };
+    let found = |all: &[(&str, bool)]| all.iter().map(|(name, new)| ((*name).to_owned(), *new)).collect::<Vec<_>>();
+    assert_eq!(taken(&["Arm", "Arm "], &["Arm ", "Arm"]), found(&[("Arm ", false), ("Arm", false)]));
+    assert_eq!(taken(&[], &["leg "]), found(&[("leg", true)]));
+    assert_eq!(taken(&["Arm "], &["Arm"]), found(&[("Arm ", false)]));
+    assert_eq!(taken(&["Arm"], &[" Arm\n"]), found(&[("Arm", false)]));
+    // The exact name goes first, and what is not clear is new.
+    assert_eq!(taken(&["Arm"], &["Arm ", "Arm"]), found(&[("Arm ", true), ("Arm", false)]));
+    assert_eq!(taken(&["Arm ", " Arm"], &["Arm"]), found(&[("Arm", true)]));
+    assert_eq!(taken(&["Arm "], &["Arm", " Arm"]), found(&[("Arm", true), (" Arm", true)]));
+    assert_eq!(taken(&[], &["leg ", "leg"]), found(&[("leg ", true), ("leg", true)]));
+}
+
+#[test]
 fn a_part_is_hidden_and_shown_as_in_the_file() {
     let part = tracked();
     let mut shape = written(&part);

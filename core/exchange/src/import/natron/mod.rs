@@ -228,7 +228,8 @@ fn knots(item: Node) -> Result<Vec<Knot>, ImportError> {
 /// The label of an item; its script name if it has none.
 fn name(item: Node) -> String {
     let own = item.descendants().find(|node| named(*node, "RotoItemSerialization"));
-    let text = |name| own.and_then(|own| child(own, name)).map(text_of).filter(|text| !text.is_empty());
+    // Blanks at the ends belong to a name.
+    let text = |name| own.and_then(|own| child(own, name)?.text()).filter(|text| !text.trim().is_empty());
     text("Label").or_else(|| text("Name")).unwrap_or_default().to_owned()
 }
 
