@@ -40,6 +40,10 @@ class Written:
     between: int = 0
     lost: set[int] = field(default_factory=set)
     """Scene frames with a stroke that could not be written: one of its points has no place."""
+    as_between: dict[str, set[int]] = field(default_factory=dict)
+    """By layer the scene frames on which its traced strokes are in `in_betweens`."""
+    as_traced: dict[str, set[int]] = field(default_factory=dict)
+    """By layer the scene frames on which its in-betweens are in `traced`."""
 
 
 def of(ob, pegs: set[str], size: tuple[int, int] | None = None) -> Written:
@@ -99,6 +103,7 @@ class OfLayer:
     """The drawings of one layer."""
 
     def __init__(self, ob, name: str, pegs: set[str], size: tuple[int, int] | None):
+        self.name = name
         self._ob, self._pegs, self._offset = ob, pegs, ob.rototoon.frame_offset
         (self._drawn,) = dr.read(ob, [name], None)
         self._record = tween_records.read(ob.data).get(self._drawn.name, tween_records.Layer())
@@ -173,6 +178,16 @@ class OfLayer:
         return list(self._sheets)
 
     @property
+    def traced(self) -> set[int]:
+        """The frames that show a traced drawing, or one of the artist that was followed."""
+        return set(self._shown_as_traced)
+
+    @property
+    def between(self) -> set[int]:
+        """The frames of in-betweens."""
+        return set(self._drawn.other)
+
+    @property
     def highest(self) -> int:
         """The highest number of a stroke."""
         return max((number for sheet in self._sheets.values() for number in sheet.numbers.values()), default=0)
@@ -186,9 +201,18 @@ class OfLayer:
         """The frame of the next drawing of the artist."""
         return next((key for key in self._keys if key > frame), None)
 
+    def _shown_on(self, frame: int) -> int | None:
+        """The frame of the drawing that the layer shows on a frame."""
+        return max((each for each in self._sheets if each <= frame), default=None)
+
+    def shown_as_traced(self, frame: int) -> list[dict[str, Any]]:
+        """The strokes that the layer shows on a frame, in the form of traced ones."""
+        drawn = self._shown_on(frame)
+        return [] if drawn is None else self._numbered(drawn)
+
     def shown(self, frame: int) -> list[dict[str, Any]]:
         """The strokes that the layer shows on a frame, in the form of in-betweens."""
-        drawn = max((each for each in self._sheets if each <= frame), default=None)
+        drawn = self._shown_on(frame)
         if drawn is None:
             return []
         if drawn in self._drawn.other:
@@ -244,7 +268,7 @@ class OfLayer:
         """By frame the drawing that it shows, where that is a traced one, or one of the artist that was followed."""
         found = {frame: frame for frame in self._sheets if frame in self._drawn.made or frame in self._keys and self._sheets[frame].carried}
         for frame in self._held - self._sheets.keys():
-            before = max((each for each in self._sheets if each < frame), default=None)
+            before = self._shown_on(frame)
             if before in found:
                 found[frame] = before
         return found

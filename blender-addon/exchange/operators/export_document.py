@@ -109,6 +109,10 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
             self._warn_of_others(ob)
         if written.lost:
             self.warn(f"left out: strokes with a point without a place (not a number), on {listed(sorted(written.lost))}")
+        for name, frames in written.as_between.items():
+            self.warn(f'traced strokes of "{name}" go out as in-betweens on {listed(sorted(frames))}, where another layer has in-betweens')
+        for name, frames in written.as_traced.items():
+            self.warn(f'in-betweens of "{name}" go out as traced strokes on {listed(sorted(frames))}, where another layer has traced ones; none of them fades')
         found = [counted(written.keys, "drawing")] if written.keys else []
         found += [f"traced lines of {counted(written.traced, 'frame')}"] if written.traced else []
         return found + ([counted(written.between, "in-between")] if written.between else [])
