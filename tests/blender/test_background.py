@@ -73,7 +73,22 @@ def test_the_status_tells_what_went_wrong(folder):
     vanishing(folder / "vanishing")
     ended = run(folder, "vanishing/shot_001.png", one, "lost.blend")
     assert ended.returncode == 3, ended.stdout + ended.stderr
-    assert "square: draw a key on frame" in ended.stderr
+    assert 'track: "square" needs a key on' in ended.stderr
+
+
+def test_contours_that_are_most_likely_off_are_named(folder):
+    vanishing(folder / "gone")
+    both = contours(folder, {f: {"square": shots.square(f - 1)} for f in (1, 9)})
+    ended = run(folder, "gone/shot_001.png", both, "off.blend")
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert 'track: "square" is most likely off on' in ended.stderr
+
+
+def test_without_arguments_the_use_is_shown(folder):
+    command = [sys.executable, "headless.py", "rototoon.zip", "track_shot.py"]
+    own = {key: value for key, value in os.environ.items() if key != "BLENDER_USER_RESOURCES"}
+    ended = subprocess.run(command, cwd=folder, env=own, capture_output=True, text=True, check=False, timeout=600)
+    assert ended.returncode == 2 and "Tracks a shot" in ended.stderr
 
 
 def vanishing(folder):
