@@ -25,7 +25,7 @@ class Judged:
     weakest: int | None
     """The frame where the next key helps most. `None` if nothing was tracked."""
     doubt: float
-    """Number of parts that are expected to be wrong there."""
+    """The sum of the doubts about the parts there."""
 
     def of(self, number: int) -> Outcome:
         """What became of a part."""
@@ -72,7 +72,10 @@ def means(handle) -> np.ndarray:
 
 
 def weakest(ob, found: contours.Contours) -> tuple[int, float]:
-    """The scene frame where the next key helps most, and its doubt as a share of the parts there, 0 to 1."""
+    """The scene frame where the next key helps most, and its doubt as a share of the parts there, 0 to 1.
+
+    The command line has the sum over the parts. Here it is divided by their number: a share can be read without knowing how many there are.
+    """
     answer = judged(ob, found)
     if answer.weakest is None:
         raise Problem("Nothing is tracked yet: press Track first")
