@@ -83,6 +83,29 @@ def need_pictures(ob, reading: Reading) -> None:
         raise Problem(f"The footage has no picture for the contours {where}: delete or move them; it has frames {first} to {last}")
 
 
+DECIMALS = 4
+"""Of pixels that were computed, in files. What the artist made is written exactly."""
+
+
+def round_off(project: dict[str, Any]) -> None:
+    """Rounds computed coordinates as the core does when it saves. Points of keys and pins stay, so tracks contain them exactly."""
+    for entry in project["parts"]:
+        for frame, points in entry.get("tracks", {}).items():
+            if frame not in entry["keys"]:
+                pins = entry.get("pins", {}).get(frame, {})
+                made = {int(i): place for i, place in pins.items() if points[int(i)] == place}
+                entry["tracks"][frame] = [made.get(i, point) for i, point in enumerate(_rounded(points))]
+        for frame, values in entry.get("confidence", {}).items():
+            entry["confidence"][frame] = _rounded(values)
+        for frame, paths in entry.get("curves", {}).items():
+            entry["curves"][frame] = [_rounded(path) for path in paths]
+
+
+def _rounded(values: list) -> list:
+    # Without a zero that is negative.
+    return (np.asarray(values, np.float64).round(DECIMALS) + 0.0).tolist()
+
+
 def reach(project: dict[str, Any]) -> list[int]:
     """Lets the footage of a document go on to its last contour, if it is one picture: a drawing on it that was reshaped moves on before that
     picture, which is held. Returns the frames of contours that longer footage does not reach; those are in no picture and no shape."""

@@ -9,14 +9,18 @@ makes these lines anew, as ever.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender import marks, own_attributes, stroke_rows
 from ..blender import strokes as st
 from ..blender.placement import Mapper
+from ..common.wording import listed
 from . import writing
 from .contours import Contours, Part, read_drawing
+from .corrections import MOVED
 
 
 def join(segments: list[np.ndarray], closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -155,6 +159,39 @@ def read(ob) -> dict[tuple[int, int], list[np.ndarray]]:
 def reshaped(ob) -> list[int]:
     """The scene frames with snapped strokes that were fitted or cut since."""
     return sorted({frame for (_, frame), paths in _read(ob).items() if paths is None})
+
+
+def older(ob, project: dict[str, Any]) -> str:
+    """The snapped lines that are older than their contours, of a document of the object with results, in words. Empty if there are none."""
+    found = [f'"{name}" on {listed(frames)}' for name, frames in _older(ob, project).items()]
+    return f"snapped lines are older than the contours: {', '.join(found)}; Snap to Ink makes them again" if found else ""
+
+
+def _older(ob, project: dict[str, Any]) -> dict[str, list[int]]:
+    """By part the scene frames.
+
+    A path begins and ends at the control points that it was snapped from. Lines that the artist changed lie as the artist wants.
+    """
+    layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if layer is None:
+        return {}
+    own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED} | set(marks.changed_frames(ob.data, layer.name))
+    found = {}
+    for entry in project["parts"]:
+        contours = {**entry["keys"], **entry.get("tracks", {})}
+        frames = [int(label) + ob.rototoon.frame_offset for label, paths in entry.get("curves", {}).items() if _moved_off(paths, contours.get(label))]
+        left = [frame for frame in frames if frame not in own]
+        if left:
+            found[entry["name"]] = left
+    return found
+
+
+def _moved_off(paths: list, contour: list | None) -> bool:
+    """Whether the ends of paths are not the control points of a contour, or there is none."""
+    if contour is None:
+        return True
+    ends = [path[0] for path in paths] + ([paths[-1][-1]] if len(paths) < len(contour) else [])
+    return len(ends) != len(contour) or bool(np.linalg.norm(np.subtract(ends, contour), axis=1).max() > MOVED)
 
 
 def _read(ob) -> dict[tuple[int, int], list[np.ndarray] | None]:

@@ -4,7 +4,7 @@ import bpy
 
 from ...blender import guard, masks
 from ...blender.errors import Problem
-from ...capture import document
+from ...capture import document, snapping
 from ...common.operators import Guarded, OnContours
 from ...common.wording import counted
 from .. import outlines
@@ -39,6 +39,9 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
         parts = outlines.outlines(reading.document, settings.frame_offset, self.use_snapped)
         if not parts:
             raise Problem("No part has a key yet: press Track, or New Key Here, first")
+        older = snapping.older(ob, reading.document) if self.use_snapped else ""
+        if older:
+            self.warn(older)
         mask = masks.write(context, name, parts, settings.width, settings.height)
         return f'{counted(len(parts), "part")} in the mask "{mask.name}"'
 

@@ -64,6 +64,10 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         reading = document.read(context.object, results=True, needed=False)
         document.need_pictures(context.object, reading)
         beyond = document.reach(reading.document)
+        older = snapping.older(context.object, reading.document)
+        if older:
+            self.warn(older)
+        document.round_off(reading.document)
         lines = self._add_lines(context.object, reading.document)
         paint = self._add_paint(context.object, reading.document)
         known_files.save(context.object, path, reading.document)
