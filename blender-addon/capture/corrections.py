@@ -40,7 +40,9 @@ class Corrections:
     held: dict[int, np.ndarray] = field(default_factory=dict)
     """By frame the stroke's points in layer space, as the artist left them."""
     whole: list[int] = field(default_factory=list)
-    """Frames on which the artist moved the whole line since the last time."""
+    """Frames on which the artist moved every point since the last time, and all of them hold: a line that was moved, turned or scaled."""
+    sought: list[int] = field(default_factory=list)
+    """Frames on which the artist moved the whole line since the last time, and its centre alone is corrected."""
 
 
 def detect(found: Contours, mapper: Mapper, settles: bool = False) -> dict[int, Corrections]:
@@ -68,8 +70,8 @@ def _of_part(
             mapping = mapper.at(stroke.layer, frame)
             points = mapping.to_pixels(stroke.points)
             moved, whole = compare(mapping.to_pixels(tracked), points)
-            if whole:
-                corrections.whole.append(frame)
+            if moved.all():
+                (corrections.sought if whole and settles else corrections.whole).append(frame)
             if whole and settles:
                 center, has_center = _single(np.append(points.mean(0), 1.0)), True
             else:

@@ -36,7 +36,9 @@ class Run:
     closed: tuple[str, ...]
     """Names of the locked layers at the beginning."""
     moved: dict[str, list[int]]
-    """By part the scene frames on which the artist moved the whole line since the last run."""
+    """By part the scene frames on which the artist moved every point since the last run, and all of them hold."""
+    sought: dict[str, list[int]]
+    """By part the scene frames on which the artist moved the whole line since the last run, and its centre alone is corrected."""
     entry: sessions.Entry
     worker: jobs.Worker
     taken: str = ""
@@ -64,8 +66,11 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
     entry.inputs = None
     threads = preferences.threads()
     worker = jobs.Worker(lambda progress: entry.session.track(preset, progress, threads=threads))
-    moved = {p.name: reading.corrections[p.number].whole for p in reading.found.parts if reading.corrections[p.number].whole}
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, entry, worker, *_of_new(reading.decisions))
+    fixed = {part.name: reading.corrections[part.number] for part in reading.found.parts}
+    moved = {name: own.whole for name, own in fixed.items() if own.whole}
+    sought = {name: own.sought for name, own in fixed.items() if own.sought}
+    closed, new = reading.found.closed_names, _of_new(reading.decisions)
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, closed, moved, sought, entry, worker, *new)
 
 
 def _of_new(decisions: identity.Decisions) -> tuple[str, tuple[str, ...]]:
@@ -152,15 +157,18 @@ def told(run: Run, strokes: int, reset: bool = False) -> str:
     return text if run.worker.result.solved or not strokes or reset else "Nothing to track again: " + text
 
 
-def of_moved_lines(ob, run: Run) -> str:
+def of_moved_lines(run: Run) -> str:
     """What became of lines that the artist moved as a whole; empty if there are none."""
-    said = [f'"{name}" on {listed(sorted(frames))}' for name, frames in run.moved.items()]
+    return _of_moved("kept as you moved it", run.moved) + _of_moved("looked for where you moved it", run.sought)
+
+
+def _of_moved(what: str, moved: dict[str, list[int]]) -> str:
+    said = [f'"{name}" on {listed(sorted(frames))}' for name, frames in moved.items()]
     if not said:
         return ""
     if len(said) > NAMED:
         said[NAMED:] = [counted(len(said) - NAMED, "more part")]
-    settles = ob.rototoon.moved_line == "SETTLE"
-    return f"; {'looked for where you moved it' if settles else 'kept as you moved it'}: " + ", ".join(said)
+    return f"; {what}: " + ", ".join(said)
 
 
 def goes_on(ob, run: Run) -> str:

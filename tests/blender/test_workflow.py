@@ -109,6 +109,35 @@ def test_moved_points_become_pins_and_only_their_span_is_solved(addon, fake, tmp
     assert [len(mark.points) for mark in marks] == [1]
 
 
+@pytest.mark.parametrize("moved_line", ["KEEP", "SETTLE"])
+@pytest.mark.parametrize(("degrees", "scale"), [(125, 1.0), (10, 1.0), (0, 1.5)])
+def test_a_line_that_was_turned_or_scaled_is_named_and_keeps_its_shape(addon, fake, tmp_path, degrees, scale, moved_line):
+    ob = shots.two_keys(addon, tmp_path)
+    ob.rototoon.moved_line = moved_line
+    bpy.ops.rototoon.track()
+    before, turn = dict(shots.pixels(addon, ob, 6))[1], np.radians(degrees)
+    around = before - before.mean(0)
+    placed = before.mean(0) + scale * around @ [[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]
+    shots.move(addon, ob, 6, 1, placed - before)
+    reports = addon("common.reports")
+    reports.take()
+    for _ in range(2):
+        bpy.ops.rototoon.track()
+    assert ['; kept as you moved it: "Part 1" on 6' in report.text for report in reports.take()] == [True, False]
+    assert dict(shots.pixels(addon, ob, 6))[1] == pytest.approx(placed, abs=1e-3)
+
+
+def test_a_line_that_settles_is_named_as_looked_for(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    ob.rototoon.moved_line = "SETTLE"
+    bpy.ops.rototoon.track()
+    shots.move(addon, ob, 6, 1, (9.0, 4.0))
+    addon("common.reports").take()
+    bpy.ops.rototoon.track()
+    (report,) = addon("common.reports").take()
+    assert '; looked for where you moved it: "Part 1" on 6' in report.text and "kept as" not in report.text
+
+
 @pytest.mark.parametrize("shift", [(0.6, 0.2), (9.0, 4.0), (60.0, 20.0)])
 def test_a_line_moved_as_a_whole_keeps_its_shape(addon, fake, tmp_path, shift):
     ob = shots.two_keys(addon, tmp_path)

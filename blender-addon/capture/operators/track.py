@@ -54,7 +54,7 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
             self.warn(text)
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
         told = tracking.told(self._tracking, strokes, bool(reset)) + self._tracking.taken
-        return told + tracking.of_moved_lines(self._ob, self._tracking) + tracking.goes_on(self._ob, self._tracking)
+        return told + tracking.of_moved_lines(self._tracking) + tracking.goes_on(self._ob, self._tracking)
 
 
 def _match(progress, found: contours.Contours, mapper, number: int) -> None:
