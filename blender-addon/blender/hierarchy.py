@@ -52,6 +52,10 @@ def groups_of(layer) -> list[str]:
     return names
 
 
+ASIDE = " Hidden"
+"""Suffix of the name of a layer with the hidden lines of another one."""
+
+
 def beside(ob, layer, name: str):
     """The layer called `name`. If there is none, a new layer with the same place and the same carrier as `layer`."""
     found = ob.data.layers.get(name)

@@ -38,6 +38,7 @@ from itertools import islice, pairwise, permutations
 import numpy as np
 
 from . import grease_pencil as gp
+from . import hierarchy
 from . import strokes as st
 
 PROPERTY = "rototoon_slots"
@@ -157,16 +158,16 @@ def changed_frames(data, layer: str) -> list[int]:
 
 @contextmanager
 def kept(ob) -> Iterator[None]:
-    """Keeps the marks of snapped drawings while Rototoon itself changes them: what was as it was generated counts as such afterwards too."""
-    name = ob.rototoon.snapped_layer
-    layer = gp.find_layer(ob, name)
-    if layer is None:
-        yield
-        return
-    before, there = untouched_frames(ob.data, name), set(gp.frame_numbers(layer))
+    """Keeps the marks of snapped drawings, and of their hidden lines, while Rototoon itself changes them: what was as it was generated counts as such
+    afterwards too."""
+    names = [ob.rototoon.snapped_layer, ob.rototoon.snapped_layer + hierarchy.ASIDE]
+    before = {name: untouched_frames(ob.data, name) for name in names if gp.find_layer(ob, name) is not None}
+    there = {name: set(gp.frame_numbers(gp.find_layer(ob, name))) for name in before}
     yield
-    # New drawings are copies that Rototoon made.
-    note(ob.data, name, before | set(gp.frame_numbers(gp.find_layer(ob, name))) - there)
+    for name in names:
+        if gp.find_layer(ob, name) is not None:
+            # New drawings are copies that Rototoon made.
+            note(ob.data, name, before.get(name, set()) | set(gp.frame_numbers(gp.find_layer(ob, name))) - there.get(name, set()))
 
 
 def _told(data, layer: str) -> dict[int, bool | None]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..blender import grease_pencil as gp
 from ..common.operators import OnContours, OnDrawing
-from . import stand
+from . import snapping, stand
 
 
 class OnTracked(OnContours):
@@ -26,6 +26,6 @@ class WithGenerated(OnDrawing):
         why = super().lacking(ob, changes)
         if why:
             return why
-        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
-        generated = stand.has_generated(ob) or (snapped is not None and gp.frame_numbers(snapped))
+        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer), snapping.aside(ob)
+        generated = stand.has_generated(ob) or any(layer is not None and gp.frame_numbers(layer) for layer in snapped)
         return "" if generated else "Nothing is generated yet: press Track first"

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import marks, own_attributes, stroke_rows
+from ..blender import guard, hierarchy, marks, own_attributes, stroke_rows
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from ..common.wording import listed
@@ -64,12 +64,40 @@ def _arc(path: np.ndarray) -> np.ndarray:
     return steps / steps[-1] if steps[-1] > 0 else np.linspace(0, 1, len(path)) if len(path) > 1 else steps
 
 
-def keep_edited(ob, frame: int | None = None) -> list[int]:
+def aside(ob):
+    """The layer with the hidden lines of snapped ones, which Remove Hidden Lines makes; `None` if there is none."""
+    return gp.find_layer(ob, ob.rototoon.snapped_layer + hierarchy.ASIDE)
+
+
+def old_aside(ob) -> set[int]:
+    """The frames of hidden lines that were cut from generated snapped drawings. Those of the artist's snapped drawings belong to these."""
+    layer, whole = aside(ob), gp.find_layer(ob, ob.rototoon.snapped_layer)
+    if layer is None:
+        return set()
+    drawings = {} if whole is None else gp.drawings(whole)
+    shown = {frame: st.shown_frame(whole, frame) if whole is not None else None for frame in gp.frame_numbers(layer)}
+    return {frame for frame, source in shown.items() if source is None or drawings[source][1] == gp.GENERATED}
+
+
+def clear_aside(ob) -> tuple[list[int], str]:
+    """Removes the hidden lines of snapped drawings that are drawn anew. Returns the frames of those that stay because the artist changed
+    them, and a warning if none may be removed."""
+    layer = aside(ob)
+    if layer is None or not gp.frame_numbers(layer):
+        return [], ""
+    if guard.closed(layer):
+        return [], guard.left_out([layer])
+    edited = keep_edited(ob, layer=layer)
+    writing.clear(layer, old_aside(ob))
+    return edited, ""
+
+
+def keep_edited(ob, frame: int | None = None, layer=None) -> list[int]:
     """Makes snapped drawings that the artist changed the artist's, so that they are not written again: all, or that on `frame`.
 
-    Returns their frames.
+    `layer` is by default that of snapped lines. Returns their frames.
     """
-    layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
+    layer = layer or gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None:
         return []
     edited = [each for each in marks.changed_frames(ob.data, layer.name) if frame in (None, each)]

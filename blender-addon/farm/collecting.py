@@ -297,4 +297,6 @@ def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[
         return guard.left_out([layer])
     done.edited = snapping.keep_edited(ob)
     snapping.write(ob, snapping.read(ob) | curves, reading.found, reading.mapper)
-    return ""
+    hidden, left = snapping.clear_aside(ob)
+    done.edited = sorted({*done.edited, *hidden})
+    return left

@@ -21,7 +21,7 @@ from ..blender import guard, hierarchy, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
 
-SUFFIX = " Hidden"
+SUFFIX = hierarchy.ASIDE
 """Suffix of the name of a layer with hidden lines."""
 _POLYLINE, _SPLINE, _CHAIN = range(3)
 

@@ -29,19 +29,20 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
     def run(self, context) -> str:
         ob, current = context.object, context.scene.frame_current
         layers = [(layer, not self.corrected) for layer in gp.layers(ob, ob.rototoon.contours_layer)]
-        snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
-        if snapped is not None and self.snapped:
-            layers.append((snapped, False))
+        aside = snapping.aside(ob)
+        snapped = [layer for layer in (gp.find_layer(ob, ob.rototoon.snapped_layer), aside) if layer is not None and self.snapped]
+        layers += [(layer, False) for layer in snapped]
         every = [layer for layer, _ in layers if len(layer.frames)]
         guard.need_some(every)
-        cleared, kept, edited = 0, 0, []
+        edited = set() if self.corrected else self._kept(ob, snapped, current)
+        # Found before the drawings are gone from which the lines were cut.
+        old = snapping.old_aside(ob)
+        cleared, kept = 0, 0
         for layer, keep in layers:
             if guard.closed(layer):
                 continue
-            if layer == snapped and not self.corrected:
-                edited = snapping.keep_edited(ob, None if self.frames == "ALL" else current)
             drawings = gp.drawings(layer)
-            frames = [f for f in drawings if self.frames == "ALL" or f == current]
+            frames = [f for f in (old if layer == aside else drawings) if self.frames == "ALL" or f == current]
             if keep:
                 kept += sum(writing.is_corrected(drawings[f][0]) for f in frames)
             cleared += writing.clear(layer, frames, keep_corrected=keep)
@@ -52,6 +53,11 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
         self.warn(guard.left_out(every))
         said = f"{counted(cleared, 'generated drawing')} removed"
         return joined(said, f"{kept} with corrections kept" if kept else "", stayed("snapped drawing", edited))
+
+    def _kept(self, ob, snapped: list, current: int) -> set[int]:
+        """Makes snapped drawings that the artist changed the artist's. Returns their frames."""
+        frame = None if self.frames == "ALL" else current
+        return {number for layer in snapped if not guard.closed(layer) for number in snapping.keep_edited(ob, frame, layer)}
 
 
 CLASSES = (ROTOTOON_OT_clear_generated,)

@@ -8,7 +8,7 @@ from ...blender import guard, marks
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from ...common.wording import listed
-from .. import absence, contours, doubt, live
+from .. import absence, contours, doubt, live, snapping
 
 
 class ROTOTOON_OT_hide_part(Guarded, OnContours, bpy.types.Operator):
@@ -72,11 +72,11 @@ def hide(operator: Guarded, ob, found: contours.Contours, item, pictures: list[i
     frames = [picture + ob.rototoon.frame_offset for picture in pictures]
     corrected = [number for number in frames if _is_corrected(found, part, number)]
     _remove(gp.find_layer(ob, found.layer_names[part.layer]), part.number, frames)
-    snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
-    if snapped is not None and _made(snapped, part.number, frames):
-        operator.warn(guard.left_out([snapped]))
-        if not guard.closed(snapped):
-            _remove(snapped, part.number, frames)
+    snapped = [layer for layer in (gp.find_layer(ob, ob.rototoon.snapped_layer), snapping.aside(ob)) if layer is not None]
+    snapped = [layer for layer in snapped if _made(layer, part.number, frames)]
+    operator.warn(guard.left_out(snapped))
+    for layer in guard.open_layers(snapped):
+        _remove(layer, part.number, frames)
     if corrected:
         operator.warn(f"your corrections of it on {listed(corrected)} are gone: Undo brings them back")
     ob.data.update_tag()

@@ -45,9 +45,11 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
         curves = self._curves(reading)
         edited = snapping.keep_edited(self._ob)
         strokes = snapping.write(self._ob, curves, reading.found, reading.mapper)
+        hidden, left = snapping.clear_aside(self._ob)
+        self.warn(left)
         self._ob.data.update_tag()
         said = f'{counted(strokes, "line")} on the layer "{self._ob.rototoon.snapped_layer}"'
-        return joined(said, stayed("drawing", edited))
+        return joined(said, stayed("drawing", edited), stayed("hidden-line drawing", hidden))
 
     def _curves(self, reading):
         offset, curves = self._ob.rototoon.frame_offset, {}
