@@ -171,9 +171,13 @@ class CaptureSettings:
     show_pins: bpy.props.BoolProperty(
         name="Show Pins", description="Mark the points and centres that you fixed", default=True
     )
-    parts: bpy.props.CollectionProperty(type=RototoonPart)
+    parts: bpy.props.CollectionProperty(
+        name="Parts", description="The parts, in the order of the list. Track and the keys make them", type=RototoonPart
+    )
     exchanges: bpy.props.StringProperty(
         description="Parts that may have changed places where the last Track followed them: [[number, number, [picture, ...]], ...]"
     )
-    active_part: bpy.props.IntProperty(name="Active Part", default=0)
+    active_part: bpy.props.IntProperty(
+        name="Active Part", description="Index in the parts of the one that is chosen in the list. Operators for the chosen part work on it", default=0
+    )
     next_number: bpy.props.IntProperty(default=1)

@@ -31,8 +31,11 @@ class FillSettings:
         max=1.0,
         default=(0.93, 0.76, 0.62),
     )
-    fill_name: bpy.props.StringProperty(default="")
-    """The name of the material that Ctrl-click has taken. It counts as long as its look is that of the colour."""
+    fill_name: bpy.props.StringProperty(
+        name="Colour's Name",
+        description="Name of the material that a Ctrl-click has taken. It counts as long as that material has the colour of Paint Bucket",
+        default="",
+    )
     fill_nothing: bpy.props.BoolProperty(
         name="No Paint",
         description="Paint Bucket says of a region that it stays without paint, on all drawings: paper that shows between a figure's limbs, or around it",
@@ -46,7 +49,9 @@ class FillSettings:
         max=1.0,
         subtype="FACTOR",
     )
-    recolours: bpy.props.CollectionProperty(type=RototoonRecolour)
+    recolours: bpy.props.CollectionProperty(
+        name="Recolours", description="Materials that become others on some frames, in their order. Recolour adds one", type=RototoonRecolour
+    )
     show_fill_doubts: bpy.props.BoolProperty(
         name="Mark Doubtful Regions",
         description="Draw a line in black and red around regions whose colour is probably wrong",

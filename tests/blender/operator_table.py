@@ -28,9 +28,18 @@ def settings() -> str:
     """The settings of an object: the properties of `object.rototoon`."""
     rna = bpy.types.Object.bl_rna.properties["rototoon"].fixed_type
     own = [prop for prop in rna.properties if prop.identifier not in ("rna_type", "name") and prop.description]
-    text = "\n## Settings of an object\n\nThey are the properties of `object.rototoon`.\n"
-    text += "\n| property | values | default | what it is |\n| --- | --- | --- | --- |\n"
-    return text + "".join(row(prop) for prop in own)
+    text = "\n## Settings of an object\n\nThey are the properties of `object.rototoon`.\n" + table(own)
+    blenders = {prop.as_pointer() for prop in bpy.types.PropertyGroup.bl_rna.properties}
+    for prop in own:
+        if prop.type == "COLLECTION":
+            items = [each for each in prop.fixed_type.properties if each.as_pointer() not in blenders and each.description]
+            text += f"\nAn item of `object.rototoon.{prop.identifier}` has these:\n" + table(items)
+    return text
+
+
+def table(props) -> str:
+    """Properties of data as a table."""
+    return "\n| property | values | default | what it is |\n| --- | --- | --- | --- |\n" + "".join(map(row, props))
 
 
 def section(name: str) -> str:

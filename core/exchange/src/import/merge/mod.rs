@@ -66,43 +66,67 @@ pub struct Merged {
 /// Puts shapes into the scene. Says for each what became of it.
 pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
-    let mut depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
-    let mut places = places(&scene.parts, &shapes);
-    let named: BTreeSet<String> = shapes.iter().map(|shape| shape.name.clone()).collect();
-    let mut merged = Merged::default();
-    let mut found = Vec::with_capacity(shapes.len());
-    for mut shape in shapes {
-        let own = places.get(&shape.name).copied();
-        let kept = own.map_or_else(Vec::new, |place| unspoken(&scene.parts[place], &shape));
-        let mut beside = None;
-        if let Some(place) = own.filter(|&place| !kept.is_empty() && scene.parts[place].closed != shape.closed) {
-            shape.name = free(&shape.name, &places);
-            beside = Some(scene.parts[place].name.clone());
-        }
-        let (name, change) = match own.filter(|_| beside.is_none()) {
-            Some(place) => {
-                let part = &mut scene.parts[place];
-                found.push(place);
-                (part.name.clone(), update(part, shape, &scene.footage))
-            }
-            None => {
-                let plain = shape.name.trim().to_owned();
-                let is_taken = places.contains_key(&plain) || named.contains(&plain);
-                let name = if is_taken { shape.name.clone() } else { plain };
-                places.insert(name.clone(), scene.parts.len());
-                scene.parts.push(Part { name: name.clone(), depth, ..part_of(shape) });
-                depth += 1.0;
-                (name, beside.map_or(Change::New, Change::Beside))
-            }
-        };
-        if !kept.is_empty() && matches!(change, Change::Nothing | Change::Frames(_)) {
-            merged.kept.push((name.clone(), kept));
-        }
-        merged.taken.push(Taken { name, change });
-    }
+    let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
+    let places = places(&scene.parts, &shapes);
+    let named = shapes.iter().map(|shape| shape.name.clone()).collect();
+    let mut into = Into { scene, places, named, depth, found: Vec::new(), merged: Merged::default() };
+    shapes.into_iter().for_each(|shape| into.take(shape));
+    let Into { scene, found, mut merged, .. } = into;
     let moved = order::put(&mut scene.parts, &found);
     merged.moved = moved.into_iter().map(|place| scene.parts[place].name.clone()).collect();
     merged
+}
+
+/// A scene that shapes go into.
+struct Into<'a> {
+    scene: &'a mut Scene,
+    /// The part that a name means.
+    places: BTreeMap<String, usize>,
+    /// The names of all shapes of the file.
+    named: BTreeSet<String>,
+    /// The depth of the next new part.
+    depth: f64,
+    /// The parts that the file has, in its order.
+    found: Vec<usize>,
+    merged: Merged,
+}
+
+impl Into<'_> {
+    /// Brings the part of a shape's name up to date, or makes a new one.
+    fn take(&mut self, mut shape: Shape) {
+        let Some(place) = self.places.get(&shape.name).copied() else {
+            let name = self.add(shape);
+            return self.told(name, Change::New);
+        };
+        let part = &mut self.scene.parts[place];
+        let (name, kept) = (part.name.clone(), unspoken(part, &shape));
+        if !kept.is_empty() && part.closed != shape.closed {
+            shape.name = free(&shape.name, &self.places);
+            let new = self.add(shape);
+            return self.told(new, Change::Beside(name));
+        }
+        let change = update(part, shape, &self.scene.footage);
+        self.found.push(place);
+        if !kept.is_empty() && change != Change::Replaced {
+            self.merged.kept.push((name.clone(), kept));
+        }
+        self.told(name, change);
+    }
+
+    /// Makes a new part, and returns its name. Blanks at the ends of a name go if that makes it no other one's.
+    fn add(&mut self, shape: Shape) -> String {
+        let plain = shape.name.trim().to_owned();
+        let is_taken = self.places.contains_key(&plain) || self.named.contains(&plain);
+        let name = if is_taken { shape.name.clone() } else { plain };
+        self.places.insert(name.clone(), self.scene.parts.len());
+        self.scene.parts.push(Part { name: name.clone(), depth: self.depth, ..part_of(shape) });
+        self.depth += 1.0;
+        name
+    }
+
+    fn told(&mut self, name: String, change: Change) {
+        self.merged.taken.push(Taken { name, change });
+    }
 }
 
 /// The places of the parts that shapes name. A name counts as it stands. Some files have no blanks at the ends of names, or others: a part that no
