@@ -55,6 +55,15 @@ impl Compared {
 }
 
 impl Simple {
+    fn key(&self) -> Key<'_> {
+        match self {
+            Self::Id(name) => Key::Id(name),
+            Self::Class(name) => Key::Class(name),
+            Self::Element(name) => Key::Element(name),
+            _ => Key::Any,
+        }
+    }
+
     fn fits(&self, node: Node) -> bool {
         match self {
             Self::Element(name) => node.tag_name().name() == name,
@@ -67,6 +76,15 @@ impl Simple {
             Self::Never => false,
         }
     }
+}
+
+/// By what the elements of a selector are found, the rarest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Key<'a> {
+    Id(&'a str),
+    Class(&'a str),
+    Element(&'a str),
+    Any,
 }
 
 /// What one element must have.
@@ -131,6 +149,11 @@ impl Selector {
             reached = next;
         }
         reached.contains(&true)
+    }
+
+    /// What an element must have that tells most about it.
+    pub fn key(&self) -> Key<'_> {
+        self.own.iter().map(Simple::key).min().unwrap_or(Key::Any)
     }
 
     /// How strong it is: ids, then classes and the like, then names of elements.
@@ -358,6 +381,9 @@ mod tests {
         let strength = |text: &str| Selector::read(text).unwrap().strength();
         assert_eq!(strength("#a g.x > path[fill]:first-child"), [1, 3, 2]);
         assert_eq!(strength("*"), [0; 3]);
+        let key = |text: &str| format!("{:?}", Selector::read(text).unwrap().key());
+        let found = ["#a .b path.x#y", "#a path.x", "#a path", "#a *", "[fill]"].map(key);
+        assert_eq!(found, ["Id(\"y\")", "Class(\"x\")", "Element(\"path\")", "Any", "Any"]);
     }
 
     #[test]

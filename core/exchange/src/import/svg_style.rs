@@ -7,10 +7,10 @@
 //! Source: W3C, Scalable Vector Graphics (SVG) 2, chapters on styling and rendering; CSS Cascading and Inheritance Level 4.
 
 use super::problem::{LeftOut, listed};
-use super::svg_selector::Selector;
+use super::svg_selector::{Key, Selector};
 use super::svg_sheet::{READ, Sheet, declarations};
 use roxmltree::{Document, Node};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Properties that move an element and are not read. Attributes of these names mean something else.
 const MOVING: [&str; 6] = ["translate", "rotate", "scale", "offset-path", "animation", "animation-name"];
@@ -25,11 +25,49 @@ struct Declared {
     important: bool,
 }
 
+/// The declarations of a property.
+#[derive(Debug, Default)]
+struct Ruled {
+    /// The weakest first.
+    all: Vec<Declared>,
+    /// Those whose selectors name an id, a class or an element, by that name with a sign before it. A file may have as many classes as paths.
+    keyed: HashMap<String, Vec<usize>>,
+    /// The others.
+    rest: Vec<usize>,
+}
+
+impl Ruled {
+    fn add(&mut self, declared: Declared) {
+        let name = match declared.selector.key() {
+            Key::Id(name) => Some(format!("#{name}")),
+            Key::Class(name) => Some(format!(".{name}")),
+            Key::Element(name) => Some(name.to_owned()),
+            Key::Any => None,
+        };
+        name.map_or(&mut self.rest, |name| self.keyed.entry(name).or_default()).push(self.all.len());
+        self.all.push(declared);
+    }
+
+    /// The strongest declaration for an element among the important ones, or among the others.
+    fn strongest(&self, node: Node, important: bool) -> Option<&Declared> {
+        let keyed = |sign: &str, name: &str| self.keyed.get(&format!("{sign}{name}"));
+        let classes = node.attribute("class").unwrap_or("").split_whitespace().filter_map(|name| keyed(".", name));
+        let id = node.attribute("id").and_then(|name| keyed("#", name));
+        let lists = classes.chain(id).chain(keyed("", node.tag_name().name())).chain([&self.rest]);
+        let mut best: Option<usize> = None;
+        for list in lists {
+            let mut stronger = list.iter().rev().copied().take_while(|k| best.is_none_or(|best| *k > best));
+            let fits = |k: &usize| self.all[*k].important == important && self.all[*k].selector.fits(node);
+            best = stronger.find(fits).or(best);
+        }
+        best.map(|k| &self.all[k])
+    }
+}
+
 /// The style sheets of a document.
 #[derive(Debug, Default)]
 pub(super) struct Styles {
-    /// The declarations of each property, the weakest first.
-    sheets: BTreeMap<&'static str, Vec<Declared>>,
+    sheets: BTreeMap<&'static str, Ruled>,
     /// What is not read of them.
     pub unread: LeftOut,
 }
@@ -51,10 +89,10 @@ impl Styles {
         }
         // The strength of the selector decides, then the place in the document.
         rules.sort_by_key(|rule| rule.selector.strength());
-        let mut sheets: BTreeMap<&'static str, Vec<Declared>> = BTreeMap::new();
+        let mut sheets: BTreeMap<&'static str, Ruled> = BTreeMap::new();
         for rule in rules {
             let declared = Declared { selector: rule.selector, value: rule.value, important: rule.important };
-            sheets.entry(rule.property).or_default().push(declared);
+            sheets.entry(rule.property).or_default().add(declared);
         }
         Self { sheets, unread }
     }
@@ -64,10 +102,8 @@ impl Styles {
         let inline =
             || node.attribute("style").into_iter().flat_map(declarations).filter(|(name, ..)| name == property);
         let own = |important| inline().filter(|(.., is)| *is == important).last().map(|(_, value, _)| value);
-        let ruled = |important| {
-            let mut fitting = self.sheets.get(property)?.iter().rev().filter(|rule| rule.important == important);
-            fitting.find(|rule| rule.selector.fits(node)).map(|rule| rule.value.as_str())
-        };
+        let sheet = self.sheets.get(property);
+        let ruled = |important| sheet?.strongest(node, important).map(|found| found.value.as_str());
         own(true).or_else(|| ruled(true)).or_else(|| own(false)).or_else(|| ruled(false))
     }
 
@@ -168,6 +204,13 @@ mod tests {
         assert_eq!(fill("<path class='i' style='fill:own'/>").as_deref(), Some("one"));
         assert_eq!(fill("<path class='i' style='fill:own !important;fill:none'/>").as_deref(), Some("own"));
         assert_eq!(fill("<path class='i' id='b'/>").as_deref(), Some("four"));
+        // Of equal ones the later counts, by whatever it is found.
+        let equal = "<style>.p.q{fill:one}.q.p{fill:two}[class].q{fill:three}.r{fill:four}.s{fill:five}</style>";
+        let fill =
+            |path: &str| asked(&format!("{equal}{path}"), |styles, node| styles.own(node, "fill").map(str::to_owned));
+        assert_eq!(fill("<path class='q p'/>").as_deref(), Some("three"));
+        assert_eq!(fill("<path class='s r'/>").as_deref(), Some("five"));
+        assert_eq!(fill("<path class='r t'/>").as_deref(), Some("four"));
     }
 
     #[test]
