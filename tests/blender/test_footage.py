@@ -287,3 +287,17 @@ def test_an_opened_file_marks_its_movie_as_used(addon, tmp_path):
     os.utime(folder, (1_000_000, 1_000_000))
     bpy.ops.wm.open_mainfile(filepath=str(blend))
     assert folder.stat().st_mtime > 1_000_000
+
+
+def test_a_scene_with_other_footage_keeps_its_size_and_says_so(addon, tmp_path):
+    shots.set_up(tmp_path)
+    shots.write_png(tmp_path / "wide_1.png", np.zeros((80, 200, 3), np.uint8))
+    reports = addon("common.reports")
+    said = reports.take()[-1].text
+    assert "the scene keeps" not in said
+    bpy.ops.rototoon.setup(filepath=str(tmp_path / "wide_1.png"))
+    width, height = shots.SIZE
+    assert f"; the scene keeps its {width}x{height}, since other footage uses it" in reports.take()[-1].text
+    assert (bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y) == (width, height)
+    bpy.ops.rototoon.setup(filepath=str(tmp_path / "wide_1.png"), match_scene=False)
+    assert "the scene keeps" not in reports.take()[-1].text

@@ -26,7 +26,9 @@ class ROTOTOON_OT_setup(FilePicker, FootageOperator, bpy.types.Operator):
 
     plane: bpy.props.EnumProperty(name="Show In", description="What shows the footage", items=properties.PLANES)
     match_scene: bpy.props.BoolProperty(
-        name="Match Scene", description="Give the scene the footage's size and frames", default=True
+        name="Match Scene",
+        description="Give the scene the footage's size and frames. If other footage uses the scene, its size stays, and frames are only added",
+        default=True,
     )
     start_drawing: bpy.props.BoolProperty(
         name="Start Drawing",
@@ -52,6 +54,9 @@ def prepare(context, shot: stage.Shot, plane: str, match_scene: bool, start_draw
     camera, said = context.scene.camera, ""
     if before is not None and camera != before:
         said += f'; it is seen through a new camera, "{camera.name}"'
+    render = context.scene.render
+    if match_scene and (render.resolution_x, render.resolution_y) != (shot.width, shot.height):
+        said += f"; the scene keeps its {render.resolution_x}x{render.resolution_y}, since other footage uses it"
     if stage.hide_default_cube(context.scene):
         said += "; the default cube is hidden"
     if start_drawing:
