@@ -2,8 +2,9 @@
 //! pictures that are made of them.
 
 use crate::cartoon::{Cartoon, bad, good, read, square, text};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fs;
+use std::path::Path;
 
 /// A document of two parts that are tracked on all frames.
 fn tracked(cartoon: &Cartoon) -> std::path::PathBuf {
@@ -239,4 +240,45 @@ fn a_document_behind_a_link_has_its_frames() {
         fs::copy(cartoon.path(&name), desk.path().join(&name)).unwrap();
     }
     assert!(bad(&["check", text(&link)], 1).contains("frame 6: no file"));
+}
+
+/// What a document has of its first part on its frames.
+fn keys_of(document: &Path) -> Value {
+    let whole: Value = serde_json::from_str(&fs::read_to_string(document).unwrap()).unwrap();
+    whole["parts"][0].clone()
+}
+
+#[test]
+fn a_range_of_frames_and_files_for_each_frame_change_these_frames_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let square = |x: i32| json!([[x, 12], [x + 20, 12], [x + 20, 36], [x, 36]]);
+    let tracks: serde_json::Map<_, _> = (0..10).map(|frame| (frame.to_string(), square(frame))).collect();
+    let part = json!({"name": "arm", "closed": true, "keys": {"0": square(0), "9": square(9)}, "tracks": tracks});
+    let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 9, "fps": 12, "width": 64, "height": 48});
+    fs::write(at("shot.json"), json!({"rototoon": 1, "footage": footage, "parts": [part]}).to_string()).unwrap();
+    let (document, out) = (at("shot.json"), at("out.json"));
+    let before = keys_of(&document);
+    for name in ["cut.nk", "cut.svg", "cut.fxs", "cut.ntp", "cut.setting"] {
+        for frames in ["3-6", "5"] {
+            good(&["export", text(&document), "-o", text(&at(name)), "--frames", frames]);
+            let said = good(&["import", text(&document), text(&at(name)), "-o", text(&out)]);
+            assert_eq!(keys_of(&out), before, "{name} {frames}");
+            assert!(said.contains("as before \"arm\"; the file says nothing of the frames 0-"), "{said}");
+        }
+    }
+    good(&["export", text(&document), "-o", text(&at("draw_%02d.svg")), "--frames", "4-6"]);
+    let drawn = fs::read_to_string(at("draw_05.svg")).unwrap();
+    fs::write(at("draw_05.svg"), drawn.replace("M5 12", "M1 12")).unwrap();
+    let said = good(&["import", text(&document), text(&at("draw_%02d.svg")), "-o", text(&out)]);
+    let told = "changed \"arm\" on 5; the file says nothing of the frames 0-3, 7-9 of \"arm\": they stay as they are";
+    assert!(said.contains(told), "{said}");
+    let after = keys_of(&out);
+    assert_eq!(after["keys"].as_object().unwrap().keys().collect::<Vec<_>>(), ["0", "5", "9"]);
+    assert_eq!(after["tracks"]["5"][0], json!([1.0, 12.0]));
+    assert_eq!((&after["tracks"]["4"], &after["keys"]["9"]), (&before["tracks"]["4"], &before["keys"]["9"]));
+    let said = bad(&["import", text(&document), text(&at("none_%02d.svg")), "-o", text(&out)], 1);
+    assert!(said.contains("found no file with a number from 0 to 9"), "{said}");
+    let said = bad(&["import", text(&document), text(&at("draw_%02d.svg")), "-o", text(&out), "--frame", "3"], 2);
+    assert!(said.contains("found --frame 3: expected no such option for a file for each frame"), "{said}");
 }
