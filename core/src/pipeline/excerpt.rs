@@ -85,6 +85,12 @@ fn cut(part: &mut Part, range: &RangeInclusive<FrameNumber>) {
         }
     }
     keep(&mut part.tracks, range);
+    // The number of a part's points is that of its keys. Without one its snapped paths would belong to nothing.
+    if part.keys.is_empty()
+        && let Some((frame, points)) = part.tracks.first_key_value()
+    {
+        part.keys.insert(*frame, points.clone());
+    }
     keep(&mut part.confidence, range);
     keep(&mut part.curves, range);
 }
@@ -143,6 +149,24 @@ mod tests {
         assert_eq!((own(&text), text.matches("<path ").count()), (own(&whole), 1));
         let error = excerpt(&document(), &taken(Some(&["leg"]), None, 0)).unwrap_err().to_string();
         assert!(error.starts_with("parts: no part \"leg\"") && error.contains("\"tracked\""), "{error}");
+    }
+
+    #[test]
+    fn a_snapped_part_follows_its_paths_between_its_keys_too() {
+        let mut whole = document();
+        let paths = |left: f64| {
+            let corners = square(left);
+            let bent = |k: usize| vec![corners[k], corners[k] + Point::new(1.0, 2.0), corners[(k + 1) % 4]];
+            (0..4).map(bent).collect::<Vec<_>>()
+        };
+        whole.scene.parts[1].curves = (1..=4).map(|frame| (frame, paths(f64::from(frame)))).collect();
+        for frames in [2..=2, 2..=3, 3..=4] {
+            let some = excerpt(&whole, &taken(None, Some(frames.clone()), 0)).unwrap();
+            for frame in frames {
+                let [own, of_all] = [&some, &whole].map(|document| document.scene.parts[1].outline(frame));
+                assert_eq!((own.as_ref().map(Vec::len), own), (Some(8), of_all), "{frame}");
+            }
+        }
     }
 
     #[test]
