@@ -231,6 +231,23 @@ def test_untracked_part_is_empty(session):
     assert session.weakest_frame() is None
 
 
+def test_a_document_that_was_tracked_elsewhere_says_what_is_hidden(tmp_path):
+    def box(left, side):
+        return [[left, 10.0], [left + side, 10.0], [left + side, 10.0 + side], [left, 10.0 + side]]
+
+    def part(name, depth, lefts, side, sure):
+        contours = {str(frame): box(left, side) for frame, left in enumerate(lefts)}
+        confidence = {str(frame): [one] * 4 for frame, one in enumerate(sure)}
+        keys = {frame: contours[frame] for frame in ("0", "3")}
+        return {"name": name, "closed": True, "depth": depth, "keys": keys, "tracks": contours, "confidence": confidence}
+
+    small = part("small", 0.0, [0.0, 22.0, 24.0, 56.0], 6.0, [1.0, 0.1, 0.1, 1.0])
+    large = part("large", 1.0, [16.0] * 4, 34.0, [1.0] * 4)
+    footage = {"pattern": "f_%d.png", "first": 0, "last": 3, "fps": 12, "width": 64, "height": 48}
+    with Session.from_document({"rototoon": 1, "footage": footage, "parts": [small, large]}, tmp_path) as opened:
+        assert [(found.part, found.frames) for found in opened.unseen()] == [("small", [1, 2])]
+
+
 def test_weakest_frame_is_in_the_doubtful_stretch(session, document):
     tracked = {str(frame): square(frame, 0) for frame in FRAMES}
     doubt = {str(frame): [0.1 if frame in (8, 9, 10) else 1.0] * 4 for frame in FRAMES}
