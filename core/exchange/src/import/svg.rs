@@ -27,7 +27,7 @@ use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
 use super::svg_edited::{Edit, edit};
 use super::svg_holes::{Bound, bounds};
 use super::svg_lost::{Cause, Clips, Cover, Lost, clips, covers};
-use super::svg_names::{Called, title};
+use super::svg_names::Called;
 use super::svg_outline::{outline, paths};
 use super::svg_style::Styles;
 use super::svg_transform::{Places, joined, moved};
@@ -438,6 +438,10 @@ fn drawn(node: Node) -> Option<Written> {
         }
         _ => None,
     }
+}
+
+fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
+    node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text())
 }
 
 #[cfg(test)]

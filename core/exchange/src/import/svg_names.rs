@@ -13,8 +13,8 @@
 
 use super::problem::LeftOut;
 use super::svg::{GROUPS, SHAPES};
-use roxmltree::{Document, Node};
-use std::collections::{BTreeMap, BTreeSet};
+use roxmltree::{Attribute, Document, Node, NodeId};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The namespace of Affinity's attributes.
 const AFFINITY: &str = "serif.com";
@@ -26,6 +26,8 @@ const PART: &str = "part-";
 pub(super) struct Called<'a> {
     /// The names of the parts that the shapes may be.
     parts: &'a [&'a str],
+    /// The titles by what they are in: to look through all children of a group for each of them takes too long.
+    titles: HashMap<NodeId, String>,
     /// The names that the file itself gives.
     given: BTreeSet<String>,
     /// Names that were found by the number of a part, with the ids.
@@ -35,10 +37,18 @@ pub(super) struct Called<'a> {
 impl<'a> Called<'a> {
     /// Prepares the names of a document whose shapes may be these parts.
     pub fn new(document: &Document, parts: &'a [&'a str]) -> Self {
-        let given = document.descendants().filter(Node::is_element).filter_map(given).map(ToOwned::to_owned);
+        let mut called = Self { parts, ..Self::default() };
+        for node in document.descendants().filter(|node| node.tag_name().name() == "title") {
+            if let (Some(owner), Some(text)) = (node.parent(), node.text()) {
+                called.titles.entry(owner.id()).or_insert_with(|| text.to_owned());
+            }
+        }
         // Without parts nobody asks.
-        let given = if parts.is_empty() { BTreeSet::new() } else { given.collect() };
-        Self { parts, given, numbered: BTreeMap::new() }
+        if !parts.is_empty() {
+            let all = document.descendants().filter(Node::is_element);
+            called.given = all.filter_map(|node| called.given(node)).map(ToOwned::to_owned).collect();
+        }
+        called
     }
 
     /// What a shape or a group is called; empty if it has no name.
@@ -59,7 +69,7 @@ impl<'a> Called<'a> {
 
     /// The name of an element itself.
     fn own(&self, node: Node) -> Option<String> {
-        if let Some(given) = given(node) {
+        if let Some(given) = self.given(node) {
             return Some(given.to_owned());
         }
         let id = id(node)?;
@@ -71,11 +81,23 @@ impl<'a> Called<'a> {
 
     /// Notes that a shape has become a part of this name.
     pub fn took(&mut self, node: Node, name: &str) {
-        let all = node.ancestors().filter(|node| given(*node).is_none()).filter_map(|node| Some((node, id(node)?)));
-        let found = all.filter(|(_, id)| !self.parts.contains(id)).find(|(_, id)| self.numbered(id) == Some(name));
+        let all = node.ancestors().filter_map(|node| Some((node, id(node)?)));
+        let mut numbered = all.filter(|(_, id)| self.numbered(id) == Some(name) && !self.parts.contains(id));
+        let found = numbered.find(|(node, _)| self.given(*node).is_none());
         if let Some((node, id)) = found {
             self.numbered.entry(id.to_owned()).or_insert_with(|| (node.range().start, name.to_owned()));
         }
+    }
+
+    /// The name that a program gives beside the id.
+    fn given<'b>(&'b self, node: Node<'b, '_>) -> Option<&'b str> {
+        let attribute = |is: &dyn Fn(&Attribute) -> bool| node.attributes().find(is).map(|found| found.value());
+        let label = || attribute(&|a| a.name() == "label");
+        let affinity =
+            || attribute(&|a| a.name() == "id" && a.namespace().is_some_and(|space| space.contains(AFFINITY)));
+        let title = self.titles.get(&node.id()).map(String::as_str);
+        let all = [title, label(), node.attribute("data-name"), affinity()];
+        all.into_iter().flatten().find(|name| !name.trim().is_empty())
     }
 
     /// The part whose number an id has. A part that the file names otherwise is not it.
@@ -101,23 +123,8 @@ impl<'a> Called<'a> {
     }
 }
 
-/// The name that a program gives beside the id.
-fn given<'a>(node: Node<'a, '_>) -> Option<&'a str> {
-    let attribute = |is: &dyn Fn(&roxmltree::Attribute) -> bool| node.attributes().find(is).map(|found| found.value());
-    let label = || attribute(&|a| a.name() == "label");
-    let affinity = || attribute(&|a| a.name() == "id" && a.namespace().is_some_and(|space| space.contains(AFFINITY)));
-    [title(node), label(), node.attribute("data-name"), affinity()]
-        .into_iter()
-        .flatten()
-        .find(|name| !name.trim().is_empty())
-}
-
 fn id<'a>(node: Node<'a, '_>) -> Option<&'a str> {
     node.attribute("id").filter(|id| !id.trim().is_empty())
-}
-
-pub(super) fn title<'a>(node: Node<'a, '_>) -> Option<&'a str> {
-    node.children().find(|child| child.tag_name().name() == "title").and_then(|title| title.text())
 }
 
 /// An id without Illustrator's escapes.
