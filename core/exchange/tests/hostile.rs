@@ -3,7 +3,9 @@
 
 use proptest::prelude::*;
 use rototoon_base::scene::Footage;
-use rototoon_exchange::import::{ImportError, Shapes, bvh, nuke::nuke, silhouette::silhouette, svg::svg};
+use rototoon_exchange::import::{
+    ImportError, Shapes, bvh, fusion::fusion, nuke::nuke, silhouette::silhouette, svg::svg, svg::svg_of,
+};
 
 fn footage(last: i32) -> Footage {
     Footage { pattern: "%d".into(), first: 0, last, fps: 25.0, width: 200, height: 100, held: false }
@@ -55,6 +57,14 @@ fn shapes_without_names_are_numbered_in_their_order() {
 }
 
 #[test]
+fn many_classes_and_shapes_of_a_group_are_found_at_once() {
+    let rules: String = (0..2000).map(|k| format!("g .s{k}{{fill:none}}")).collect();
+    let paths: String = (0..20_000).map(|k| format!("<path class=\"s{}\" d=\"M0 0h9v9\"/>", k % 2000)).collect();
+    let found = read(&format!("<style>{rules}</style><g id=\"far\"><g>{paths}</g></g>")).unwrap();
+    assert!(found.shapes.len() == 20_000 && found.shapes.iter().all(|shape| !shape.closed));
+}
+
+#[test]
 fn many_elements_that_are_left_out_have_their_places() {
     let found = read(&("<path d=\"M0 0h9\"/>".to_owned() + &"\n<text/>".repeat(50_000))).unwrap();
     assert_eq!(found.warnings.len(), 50_000);
@@ -83,9 +93,10 @@ fn coordinates_of_silhouette_are_bounded() {
     assert!(shape("(inf,0)").contains("expected (x,y)"));
 }
 
-const SEEDS: [&str; 5] = [
+const SEEDS: [&str; 6] = [
     "<svg viewBox=\"0 0 200 100\"><g transform=\"rotate(30) scale(2)\"><path id=\"a\" d=\"M1 2a5 6 0 0 1 9 9q1 2 3 4t5 6c1 2 3 4 5 6s1 2 3 4z\"/></g><rect width=\"9\" height=\"5\" rx=\"2\"/><circle r=\"4\"><title>t</title></circle></svg>",
     "<svg viewBox=\"0 0 200 100\"><path d=\"M0 0h9\"><animate attributeName=\"d\" dur=\"0.4s\" calcMode=\"discrete\" keyTimes=\"0;0.5\" values=\"M0 0h9;M0 0h5\"/><animate attributeName=\"visibility\" dur=\"0.4s\" values=\"visible;hidden\"/></path></svg>",
+    "<svg viewBox=\"0 0 200 100\" data-first=\"0\" data-last=\"9\"><style>@media all{g > .a[b='c'] #d{fill:none !important}} .e,f g{transform:rotate(2turn);transform-origin:1in 5%}</style><clipPath id=\"c\"><rect width=\"9%\" height=\"9\"/></clipPath><g id=\"part-0\" clip-path=\"url(#c)\" style=\"transform:scale(2);transform-box:fill-box;transform-origin:left 50%\"><path class=\"a e\" fill-rule=\"evenodd\" d=\"M1 2h9v9zM3 3h4v4z\"><animate attributeName=\"d\" dur=\"0.4s\" values=\"M1 2h9v9zM3 3h4v4z;M1 2h9v9zM3 3h4v4z\"/></path></g><ellipse id=\"_x20_a\" cx=\"50%\" rx=\"1cm\"/></svg>",
     "<Silhouette sessionStartFrame=\"0\"><Object type=\"Shape\" label=\"a\"><Property id=\"path\"><Key frame=\"0\"><Path type=\"Bspline\" closed=\"True\"><Point>(0,0)</Point><Point>(0.1,0)</Point><Point>(0.1,0.2)</Point></Path></Key></Property></Object></Silhouette>",
     "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zrotation\nJOINT Spine\n{\nOFFSET 0 1 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.04\n0 0 0 10\n0 1 0 20\n",
     "Roto {\n curves {{{v x3f99999a}\n {n\n {layer Root {t x44b40000 x44070000}\n {curvegroup \"a b\" 512 bezier\n {{cc {f 8192}\n {p {0 0} {{{0 x41200000} {4 9}} 0} {0 0} {0 0} {50 {{4 0} {6 20}}} {0 0} {0 0} {50 90} {0 0}}}} idem}\n {t 5 7 0 0 0 0 0 0 0 1 1 1}}}}}}\n}\n",
@@ -93,7 +104,8 @@ const SEEDS: [&str; 5] = [
 
 /// Every reader gets the text. What it answers does not matter here; that it answers does.
 fn meet_all(text: &str) {
-    let _ = svg(text, &footage(9), 0);
+    let _ = svg_of(text, &footage(9), 0, &["arm", "leg"]);
+    let _ = fusion(text, &footage(9), 0);
     let _ = silhouette(text, &footage(9));
     let _ = nuke(text, &footage(9), 0);
     let _ = bvh::seen(text, &bvh::Options::default());
