@@ -103,6 +103,8 @@ impl Sheet {
             || condition.split(',').any(|media| ["", "all", "screen", "only screen"].contains(&media.trim()));
         if name == "media" && top && is_for_all() {
             self.add(body, false);
+        } else if name == "media" && condition == "print" {
+            // It says nothing of what a screen shows.
         } else if name == "import" || matters(body) && !HARMLESS.contains(&name.as_str()) {
             self.unread.push(head.to_owned());
         }
@@ -222,11 +224,12 @@ mod tests {
     #[test]
     fn what_is_not_read_and_may_matter_is_told() {
         let (rules, unread) = read(
-            "@import 'a.css'; a + .b, .c{fill:none} .d + .e{color:red} @media print{.f{display:none}} @media print{.g{color:red}} \
+            "@import 'a.css'; a + .b, .c{fill:none} .d + .e{color:red} @media (width>9px){.f{display:none}} @media print{.f{fill:none}} @media tv{.g{color:red}} \
              @supports (x:y){.h{opacity:0}} @media all{@media screen{.i{opacity:0}}} .j:not(.k){fill:red}",
         );
         assert_eq!(rules, ["fill none"]);
-        let expected = ["@import 'a.css'", "a + .b", "@media print", "@supports (x:y)", "@media screen", ".j:not(.k)"];
+        let expected =
+            ["@import 'a.css'", "a + .b", "@media (width>9px)", "@supports (x:y)", "@media screen", ".j:not(.k)"];
         assert_eq!(unread, expected);
     }
 }

@@ -170,6 +170,9 @@ fn sheet(node: Node) -> Sheet {
     if !kind.is_empty() && !kind.eq_ignore_ascii_case("text/css") {
         return Sheet { unread: vec![format!("type='{kind}'")], ..Sheet::default() };
     }
+    if media == "print" {
+        return Sheet::default();
+    }
     if !media.split(',').any(|media| MEDIA.contains(&media.trim())) {
         return Sheet { unread: vec![format!("media='{media}'")], ..Sheet::default() };
     }
@@ -215,15 +218,15 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_told_with_its_place() {
-        let text = "<?xml-stylesheet href='a.css'?><svg><style>a + b{fill:none}</style>\n<style media='print'/><style type='text/less'/></svg>";
+        let text = "<?xml-stylesheet href='a.css'?><svg><style>a + b{fill:none}</style>\n<style media='print'/><style media='tv'/><style type='text/less'/></svg>";
         let told = Styles::of(&Document::parse(text).unwrap()).unread.lines(text);
         assert_eq!(
             told,
             [
                 "line 1, column 1: the style sheet in another file is not read",
                 "line 1, column 37: not read of the style sheet: \"a + b\"",
-                "line 2, column 1: not read of the style sheet: \"media='print'\"",
-                "line 2, column 23: not read of the style sheet: \"type='text/less'\"",
+                "line 2, column 23: not read of the style sheet: \"media='tv'\"",
+                "line 2, column 42: not read of the style sheet: \"type='text/less'\"",
             ]
         );
         let many: Vec<String> = (0..7).map(|k| k.to_string()).collect();
