@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x0a26911ce1590c2c
+HEADER_HASH = 0x63a66b77108e7144
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0
@@ -551,6 +551,12 @@ def declare(library: ctypes.CDLL) -> None:
     ]
     library.rototoon_session_weakest_frame.restype = ctypes.c_int32
     library.rototoon_session_weakest_frame.argtypes = [
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+        ctypes.c_void_p,
+    ]
+    library.rototoon_session_unseen.restype = ctypes.c_int32
+    library.rototoon_session_unseen.argtypes = [
         ctypes.c_void_p,
         ctypes.c_void_p,
         ctypes.c_void_p,

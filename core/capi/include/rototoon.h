@@ -573,6 +573,12 @@ RototoonStatus rototoon_session_weakest_frame(const struct RototoonSession *sess
                                               struct RototoonText **weakest,
                                               struct RototoonText **error);
 
+// Returns the parts that can probably not be seen on some frames, by the tracks that the document has: JSON `[{"part", "frames": [frame]}]`, as in the summary of
+// `rototoon_session_track`. So documents that were tracked elsewhere can be asked too.
+RototoonStatus rototoon_session_unseen(const struct RototoonSession *session,
+                                       struct RototoonText **unseen,
+                                       struct RototoonText **error);
+
 // Fits uniform quadratic B-splines with few guiding points to strokes.
 //
 // - `offsets`: `stroke_count` + 1 numbers, beginning with 0. Stroke `i` has the points `offsets[i]` to `offsets[i + 1]`
