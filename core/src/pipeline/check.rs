@@ -278,7 +278,7 @@ mod tests {
         limbs(&document.limbs().unwrap(), &document.scene, &mut problems);
         let told: Vec<_> = problems.iter().map(ToString::to_string).collect();
         let place = "limbs[0] (r_shoulder to r_elbow)";
-        assert_eq!(told[0], format!("{place}.start.points[1].part: found \"nobody\", expected one of \"arm\""));
+        assert_eq!(told[0], format!("{place}.start.points[1].part: found \"nobody\", expected one of arm"));
         assert!(told[1].starts_with(&format!("{place}.end.points[0].at: found 3.5, expected 0 to ")), "{told:?}");
         assert_eq!(told[2], "limbs[0].carries: there is no part \"mitten\", so the limb does not carry it");
         assert_eq!((problems.error_count(), problems.warning_count()), (2, 1));

@@ -252,7 +252,10 @@ fn keys_of(document: &Path) -> Value {
 fn a_range_of_frames_and_files_for_each_frame_change_these_frames_alone() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let square = |x: i32| json!([[x, 12], [x + 20, 12], [x + 20, 36], [x, 36]]);
+    let square = |left: i32| {
+        let x = f64::from(left);
+        json!([[x, 12.0], [x + 20.0, 12.0], [x + 20.0, 36.0], [x, 36.0]])
+    };
     let tracks: serde_json::Map<_, _> = (0..10).map(|frame| (frame.to_string(), square(frame))).collect();
     let part = json!({"name": "arm", "closed": true, "keys": {"0": square(0), "9": square(9)}, "tracks": tracks});
     let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 9, "fps": 12, "width": 64, "height": 48});

@@ -2,6 +2,7 @@
 //!
 //! - [`bvh`]: motion capture
 //! - [`svg`]: paths and basic shapes, still or animated
+//! - `svg_elements`: kinds of elements
 //! - `svg_animation`: the keys of animated paths
 //! - `svg_edited`: what a drawing program has changed in an animated path
 //! - `svg_holes`: holes of paths
@@ -51,6 +52,7 @@ pub mod silhouette;
 pub mod svg;
 mod svg_animation;
 mod svg_edited;
+mod svg_elements;
 mod svg_holes;
 mod svg_length;
 mod svg_lost;

@@ -25,6 +25,7 @@ use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, parsed};
 use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
 use super::svg_edited::{Edit, edit};
+use super::svg_elements::{GROUPS, NOT_DRAWN, SHAPES, WITHOUT_OUTLINE};
 use super::svg_holes::{Bound, bounds};
 use super::svg_lost::{Cause, Clips, Cover, Lost, clips, covers};
 use super::svg_names::Called;
@@ -38,20 +39,11 @@ use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
 use svgtypes::Transform;
 
-/// Elements whose content is not drawn in place.
-pub(super) const NOT_DRAWN: [&str; 9] =
-    ["defs", "clipPath", "mask", "pattern", "symbol", "marker", "linearGradient", "radialGradient", "filter"];
 /// Attributes of the root of an export: the first and the last frame of the document that it shows.
 const FIRST: &str = "data-first";
 const LAST: &str = "data-last";
 /// The attribute of a part of an export that has nothing but keys: their frames.
 const KEYS: &str = "data-keys";
-/// Elements that contain others.
-pub(super) const GROUPS: [&str; 4] = ["g", "a", "svg", "switch"];
-/// Elements that have an outline.
-pub(super) const SHAPES: [&str; 7] = ["path", "polygon", "polyline", "line", "circle", "ellipse", "rect"];
-/// Elements that are drawn but have no outline here.
-pub(super) const WITHOUT_OUTLINE: [&str; 4] = ["text", "image", "use", "foreignObject"];
 
 /// Reads the shapes of an SVG document for footage. A shape without animation gets its key on frame `still`. Points are
 /// converted to pixels of the footage.

@@ -12,7 +12,7 @@
 //!   document may have changed since, and then it is another one. So each of these names is told.
 
 use super::problem::LeftOut;
-use super::svg::{GROUPS, SHAPES};
+use super::svg_elements::{GROUPS, SHAPES};
 use roxmltree::{Attribute, Document, Node, NodeId};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

@@ -16,7 +16,7 @@ use super::ImportError;
 use super::limits::Points;
 use super::path::Path;
 use super::problem::quoted;
-use super::svg::{GROUPS, NOT_DRAWN, WITHOUT_OUTLINE};
+use super::svg_elements::{GROUPS, NOT_DRAWN, WITHOUT_OUTLINE};
 use super::svg_length::scaled;
 use super::svg_outline::{outline, paths};
 use super::svg_style::Styles;

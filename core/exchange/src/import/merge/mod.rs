@@ -4,7 +4,7 @@
 //! document: which contours are keys, how sure the others are, feathers, pins, snapped paths. And what the file does not speak of was not edited.
 //!
 //! **How.** A shape that has a part's name and its number of points is compared with the part on each frame of which the file speaks
-//! ([`Extent`](super::Extent)), within [`SAME`]. Where it is the same, the part stays as it is. Where it is another one, its contour becomes a key if the file or the part has
+//! ([`Extent`](super::Extent)), within a hundredth of a pixel. Where it is the same, the part stays as it is. Where it is another one, its contour becomes a key if the file or the part has
 //! a key there, and a tracked contour if it is between two keys of the file. Hidden frames are compared in the same way.
 //!
 //! A shape with another number of points is compared as an outline (`outline`): the file of a snapped part has the points of its
@@ -17,16 +17,15 @@
 //! Shapes with new names become new parts, nearer than all present parts. They are shown as the file shows them, also between keys, until they are tracked. Parts that lie in
 //! another order in the file get depths for that order (`order`).
 
+mod compared;
 mod order;
 mod outline;
 
 use super::{Shape, hidden};
+use compared::{Compared, Points, is_same};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Distance within which points are the same, in pixels: formats round them, and some have 32 bits for a coordinate.
-const SAME: f64 = 0.01;
 
 /// What became of a shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -241,35 +240,10 @@ fn is_same_outline(part: &Part, shape: &Shape, footage: &Footage) -> bool {
     known && (!unspoken(part, shape).is_empty() || (footage.first..=footage.last).filter(spoken).any(same))
 }
 
-fn is_same(a: &[Point], b: &[Point]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.distance(*b) <= SAME)
-}
-
 /// What the file shows on a frame; `None` where it hides the shape.
 fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
     let shown = shape.keys.contains_key(&frame) || !shape.extent.hides(frame);
     shown.then(|| hidden::form(&shape.keys, frame))
-}
-
-/// How a part is compared with what a file shows on a frame, and how it takes that.
-trait Compared {
-    /// Whether the part shows this on a frame on which it has a contour.
-    fn is_same(&self, part: &Part, frame: FrameNumber, file: &[Point]) -> bool;
-    /// The control points of what the file shows, and the paths between them if it shows more than these.
-    fn taken(&self, part: &Part, frame: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>);
-}
-
-/// Point by point.
-struct Points;
-
-impl Compared for Points {
-    fn is_same(&self, part: &Part, frame: FrameNumber, file: &[Point]) -> bool {
-        part.points_at(frame).is_some_and(|own| is_same(own, file))
-    }
-
-    fn taken(&self, _: &Part, _: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>) {
-        (file, Vec::new())
-    }
 }
 
 /// Changes a part where the file shows another contour, or another presence. Returns the frames.

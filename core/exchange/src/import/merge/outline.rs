@@ -10,9 +10,9 @@
 //!
 //! **Limits.** A joint that was moved lies on the new outline, but nobody says where along it.
 
-use super::{Compared, FrameNumber};
+use super::compared::Compared;
 use rototoon_base::geometry::{Point, polyline};
-use rototoon_base::scene::Part;
+use rototoon_base::scene::{FrameNumber, Part};
 
 /// Distance from a path within which a point lies on it, in pixels: formats round points, and chords cut a path's bends.
 const NEAR: f64 = 0.05;
