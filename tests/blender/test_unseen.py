@@ -4,6 +4,7 @@ import json
 
 import bpy
 import layouts
+import numpy as np
 import pytest
 import shots
 import stand_in
@@ -142,6 +143,8 @@ def behind():
 
 
 def test_a_document_that_was_tracked_elsewhere_is_asked_too(addon, library, tmp_path):
+    for picture in range(4):
+        shots.write_png(tmp_path / f"f_{picture}.png", np.full((48, 64, 3), 255, np.uint8))
     (tmp_path / "shot.json").write_text(json.dumps(behind()), encoding="utf-8")
     bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json"), keep_numbers=True)
     ob = bpy.context.object

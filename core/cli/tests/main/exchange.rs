@@ -185,7 +185,8 @@ fn a_shape_changes_the_part_of_its_name() {
     assert_eq!(found[0].2.keys().collect::<Vec<_>>(), [&2, &3, &6]);
     let document: Value = serde_json::from_str(&fs::read_to_string(&captured).unwrap()).unwrap();
     let (part, key) = (&document["parts"][1], &found[0].2[&3]);
-    assert_eq!((key.len(), key[0], &part["tracks"]["3"]), (3, [2.0, 4.0], &json!(key)));
+    let track: Vec<[f64; 2]> = serde_json::from_value(part["tracks"]["3"].clone()).unwrap();
+    assert_eq!((key.len(), key[0], &track), (3, [2.0, 4.0], key));
     let paths: Vec<Vec<[f64; 2]>> = serde_json::from_value(part["curves"]["3"].clone()).unwrap();
     let corners = [[2.0, 4.0], [18.0, 4.0], [18.0, 22.0], [2.0, 22.0]];
     assert!(paths.len() == 3 && corners.iter().all(|corner| paths.concat().contains(corner)), "{paths:?}");
