@@ -267,7 +267,8 @@ fn a_range_of_frames_and_files_for_each_frame_change_these_frames_alone() {
         json!([[x, 12.0], [x + 20.0, 12.0], [x + 20.0, 36.0], [x, 36.0]])
     };
     let tracks: serde_json::Map<_, _> = (0..10).map(|frame| (frame.to_string(), square(frame))).collect();
-    let part = json!({"name": "arm", "closed": true, "keys": {"0": square(0), "9": square(9)}, "tracks": tracks});
+    let keys = json!({"0": square(0), "9": square(9)});
+    let part = json!({"name": "arm", "closed": true, "keys": keys, "tracks": tracks, "depth": 0.0});
     let footage = json!({"pattern": "f_%03d.png", "first": 0, "last": 9, "fps": 12, "width": 64, "height": 48});
     fs::write(at("shot.json"), json!({"rototoon": 1, "footage": footage, "parts": [part]}).to_string()).unwrap();
     let (document, out) = (at("shot.json"), at("out.json"));
