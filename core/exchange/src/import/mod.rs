@@ -99,10 +99,14 @@ impl Shape {
         hidden: &[[f64; 2]],
         footage: &Footage,
     ) -> (Self, Option<String>) {
-        let ends = [keys.first_key_value(), keys.last_key_value()];
-        let ends = ends.map(|key| key.map_or(footage.first, |(frame, _)| *frame));
-        let extent = Extent::new(ends, hidden, footage);
+        let ends = |keys: &BTreeMap<FrameNumber, Vec<Point>>| {
+            let ends = [keys.first_key_value(), keys.last_key_value()];
+            ends.map(|key| key.map_or(footage.first, |(frame, _)| *frame))
+        };
+        let in_file = ends(&keys);
         let absent = hidden::hide(&mut keys, hidden, footage);
+        // The frame of a key alone may be none that the file names: a shape that stands still has none.
+        let extent = Extent::new(if in_file[0] == in_file[1] { ends(&keys) } else { in_file }, hidden, footage);
         let never =
             absent.is_none().then(|| format!("the file shows the shape {name:?} on no frame; its keys are taken"));
         (Self { name, closed, keys, absent: absent.unwrap_or_default(), falloff: None, extent }, never)

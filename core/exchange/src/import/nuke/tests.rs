@@ -265,3 +265,16 @@ fn each_kind_of_lifetime_hides_the_frames_outside_of_it() {
     assert_eq!(hidden("3"), but(4..=FrameNumber::MAX));
     assert_eq!(hidden("4"), but(4..=6));
 }
+
+#[test]
+fn a_shape_that_stands_still_speaks_of_its_lifetime_alone() {
+    let points = "{p {0 0} {10 0} {0 0} {0 0} {50 0} {0 0} {0 0} {50 90} {0 0}}";
+    let spoken = |first: FrameNumber, last: FrameNumber| {
+        let found =
+            nuke(&script("bezier", points, &format!("{{a ltn {first} ltm {last} ltt 4}}")), &footage(), 1).unwrap();
+        let shape = &found.shapes[0];
+        (footage().first..=footage().last).filter(|&frame| shape.extent.speaks_of(frame, false)).collect::<Vec<_>>()
+    };
+    assert_eq!(spoken(4, 4), [4]);
+    assert_eq!(spoken(4, 6), [4, 5, 6]);
+}
