@@ -90,7 +90,7 @@ def run(tmp_path: Path):
     keys = {str(frame): points(frame) for frame in [12, 13, 15]}
     still = {"10": [[1.0, 40.0], [30.5, 44.0]], "18": [[3.0, 41.0], [33.5, 40.0]]}
     parts = [
-        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "falloff_curve": "linear", "color": [0.25, 1, 0.5]},
+        {"name": "Größe 🦊", "closed": True, "depth": 1, "keys": keys, "absent": [[14, 14]], "falloff_curve": "linear", "color": [0.25, 1, 0.5]},
         {"name": 'near "line"', "closed": False, "depth": 2, "keys": still},
     ]
     return ready(tmp_path, parts)
@@ -131,7 +131,10 @@ def test_the_script_makes_a_mask_for_each_part_on_the_selected_layer(run):
     # It is there on frames 12, 13 and 15 only. The keys hold.
     assert keys_of(far["opacity"]) == [(25, 0), (27, 100), (29, 0), (30, 100), (31, 0)]
     assert far["opacity"]["held"] == 5
-    assert keys_of(near["opacity"])[:2] == [(25, 100), (26, 0)]
+    # A part that is not tracked yet goes evenly from key to key.
+    assert len(near["opacity"].get("keys", [])) == 0
+    assert [frame for frame, _ in keys_of(near["path"])] == list(range(25, 34))
+    assert keys_of(near["path"])[4][1]["vertices"] == [[2.0, 40.5], [32.0, 42.0]]
 
 
 def test_the_tangents_of_bezier_curves_are_relative_to_their_vertices(tmp_path: Path):
