@@ -236,8 +236,8 @@ fn is_same_outline(part: &Part, shape: &Shape, footage: &Footage) -> bool {
     let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
     let same =
         |frame: FrameNumber| of_file(shape, frame).is_some_and(|file| outline::Outline.is_same(part, frame, &file));
-    let known = part.keys.len() + part.tracks.len() > 0;
-    known && (!unspoken(part, shape).is_empty() || (footage.first..=footage.last).filter(spoken).any(same))
+    outline::has_joints(part)
+        && (!unspoken(part, shape).is_empty() || (footage.first..=footage.last).filter(spoken).any(same))
 }
 
 /// What the file shows on a frame; `None` where it hides the shape.

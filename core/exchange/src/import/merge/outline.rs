@@ -28,11 +28,7 @@ impl Compared for Outline {
     }
 
     fn taken(&self, part: &Part, frame: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>) {
-        let nearest = || {
-            let known = part.keys.keys().chain(part.tracks.keys());
-            known.min_by_key(|&&other| (i64::from(other) - i64::from(frame)).abs()).copied()
-        };
-        let like = if part.points_at(frame).is_some() { Some(frame) } else { nearest() };
+        let like = joined(part).min_by_key(|&other| (i64::from(other) - i64::from(frame)).abs());
         let Some((points, own)) = like.and_then(|like| Some((part.points_at(like)?, paths(part, like)?))) else {
             return (file, Vec::new());
         };
@@ -47,6 +43,23 @@ impl Compared for Outline {
         });
         (((0..points.len()).map(kept)).collect(), paths.collect())
     }
+}
+
+/// Whether a part has a contour whose joints can be found on an outline.
+pub(super) fn has_joints(part: &Part) -> bool {
+    joined(part).next().is_some()
+}
+
+/// The frames with a contour of a part that has as many points as its first one, and at least two. Damaged documents have others.
+fn joined(part: &Part) -> impl Iterator<Item = FrameNumber> + '_ {
+    let known = || part.keys.keys().chain(part.tracks.keys()).copied();
+    let count = known().find_map(|frame| part.points_at(frame)).map_or(0, Vec::len);
+    let fits = move |&frame: &FrameNumber| {
+        let (points, paths) = (part.points_at(frame), paths(part, frame));
+        let segments = if part.closed { count } else { count - 1 };
+        points.is_some_and(|points| points.len() == count) && paths.is_some_and(|paths| paths.len() == segments)
+    };
+    known().filter(move |_| count > 1).filter(fits)
 }
 
 /// Whether a line lies on another one along its whole length.

@@ -257,3 +257,26 @@ fn the_rate_of_a_falloff_is_taken_where_it_is_another_one() {
     let (found, change) = put(part.clone(), border(3.0));
     assert_eq!((found.falloff.rate, change), (3.0, Change::Frames(Vec::new())));
 }
+
+#[test]
+fn parts_that_are_no_contours_do_no_harm() {
+    let points = |count: usize| (0..count).map(|k| Point::new(k as f64, 3.0)).collect::<Vec<_>>();
+    for closed in [false, true] {
+        for own in 0..4 {
+            for tracked in 0..4 {
+                for file in 1..4 {
+                    let keys = BTreeMap::from([(2, points(own)), (9, points(own))]);
+                    let tracks = BTreeMap::from([(5, points(tracked))]);
+                    let curves = BTreeMap::from([(2, vec![points(2); own]), (5, vec![points(2); tracked])]);
+                    let part = Part { closed, keys, tracks, curves, name: "arm".into(), ..Part::default() };
+                    let keys = [4, 5].map(|frame| (frame, points(file))).into();
+                    let shape = Shape { keys, closed, extent: extent([4, 5], &[]), ..written(&part) };
+                    let mut scene = Scene { footage: footage(), parts: vec![part] };
+                    into_scene(&mut scene, vec![shape]);
+                    let counts: BTreeSet<usize> = scene.parts[0].keys.values().map(Vec::len).collect();
+                    assert_eq!(counts.len(), 1, "{closed} {own} {tracked} {file}");
+                }
+            }
+        }
+    }
+}
