@@ -37,5 +37,6 @@
 
 #![forbid(unsafe_code)]
 
+mod between;
 pub mod export;
 pub mod import;

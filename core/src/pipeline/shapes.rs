@@ -157,16 +157,21 @@ mod tests {
         Document::new(Scene { footage, parts })
     }
 
+    /// A scene in each form that comes in again.
+    fn written(scene: &Scene) -> [(&'static str, String); 5] {
+        [
+            ("nk", export::nuke(scene, 2.0)),
+            ("ntp", export::natron_project(scene, 2.0)),
+            ("fxs", export::silhouette(scene, 2.0)),
+            ("setting", export::fusion(scene, 2.0)),
+            ("svg", export::svg(scene, &export::SvgOptions::default())),
+        ]
+    }
+
     #[test]
     fn what_other_programs_give_back_unchanged_changes_nothing() {
         let own = document();
-        for (extension, text) in [
-            ("nk", export::nuke(&own.scene, 2.0)),
-            ("ntp", export::natron_project(&own.scene, 2.0)),
-            ("fxs", export::silhouette(&own.scene, 2.0)),
-            ("setting", export::fusion(&own.scene, 2.0)),
-            ("svg", export::svg(&own.scene, &export::SvgOptions::default())),
-        ] {
+        for (extension, text) in written(&own.scene) {
             let mut found = document();
             let format = ShapeFormat::of(extension, 1).unwrap();
             let imported = import_shifted(&mut found, &text, format, 0).unwrap();
@@ -204,13 +209,7 @@ mod tests {
             let move_by = name.len() as f64 * 10.0 + f64::from(u8::from(name.starts_with(' '))) * 5.0;
             part.keys.values_mut().chain(part.tracks.values_mut()).flatten().for_each(|p| p.x += move_by);
         }
-        for (extension, text) in [
-            ("nk", export::nuke(&own.scene, 2.0)),
-            ("ntp", export::natron_project(&own.scene, 2.0)),
-            ("fxs", export::silhouette(&own.scene, 2.0)),
-            ("setting", export::fusion(&own.scene, 2.0)),
-            ("svg", export::svg(&own.scene, &export::SvgOptions::default())),
-        ] {
+        for (extension, text) in written(&own.scene) {
             let mut found = own.clone();
             import_shifted(&mut found, &text, ShapeFormat::of(extension, 1).unwrap(), 0).unwrap();
             assert_eq!(found.scene, own.scene, "{extension}");

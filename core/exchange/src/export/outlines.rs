@@ -5,6 +5,7 @@
 
 use super::bezier::Curves;
 use super::knot::Knot;
+use crate::between::form;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
@@ -124,12 +125,10 @@ impl<'a> Outlines<'a> {
         if !self.part.tracks.is_empty() || self.part.is_absent(frame) {
             return None;
         }
-        let key = |(_, points): &(FrameNumber, &Vec<Point>)| points.len() == self.points;
-        let before = self.part.keys.range(..frame).next_back().map(|(at, points)| (*at, points)).filter(key);
-        let after = self.part.keys.range(frame..).next().map(|(at, points)| (*at, points)).filter(key);
-        let ((from, a), (to, b)) = (before?, after?);
-        let share = (f64::from(frame) - f64::from(from)) / (f64::from(to) - f64::from(from));
-        Some(a.iter().zip(b).map(|(a, b)| Knot::bare(a.lerp(*b, share))).collect())
+        let keys = &self.part.keys;
+        let between = keys.range(..frame).next().is_some() && keys.range(frame..).next().is_some();
+        let points = Some(form(keys, frame)).filter(|points| between && points.len() == self.points);
+        points.map(|points| points.into_iter().map(Knot::bare).collect())
     }
 
     /// The frames from `first` to `last` that show a contour, each with it.

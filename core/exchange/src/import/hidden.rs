@@ -8,12 +8,8 @@
 //! - A part with one key is followed outward, so hidden frames before and after its key count. If the key's frame is the
 //!   only one shown, they say nothing about others: exports write a single key like this.
 
-use rototoon_base::geometry::Point;
+use crate::between::{Keys, form};
 use rototoon_base::scene::{Footage, FrameNumber};
-use std::collections::BTreeMap;
-
-/// The contours of a shape by frame.
-type Keys = BTreeMap<FrameNumber, Vec<Point>>;
 
 /// Takes the keys on hidden frames away, and returns the frames on which the part is absent. `times` are the first and the last
 /// of each time in which the shape is hidden. `None` if it is hidden on all frames of the footage; its keys are kept then.
@@ -61,21 +57,10 @@ pub(super) fn joined(times: &[[f64; 2]], footage: &Footage) -> Vec<[FrameNumber;
     found
 }
 
-/// The form on a frame: linear between keys, held outside.
-pub(super) fn form(keys: &Keys, frame: FrameNumber) -> Vec<Point> {
-    match (keys.range(..=frame).next_back(), keys.range(frame..).next()) {
-        (Some((from, a)), Some((to, b))) if from < to => {
-            let share = (f64::from(frame) - f64::from(*from)) / (f64::from(*to) - f64::from(*from));
-            a.iter().zip(b).map(|(a, b)| a.lerp(*b, share)).collect()
-        }
-        (Some((_, own)), _) | (None, Some((_, own))) => own.clone(),
-        (None, None) => Vec::new(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::geometry::Point;
 
     /// Keys with the x of their point, which is the frame at first.
     type Found = (Vec<(FrameNumber, f64)>, Vec<[FrameNumber; 2]>);

@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn elements_are_told_apart() {
+    fn an_element_is_found_by_what_it_is_and_by_what_is_around_it() {
         for selector in [
             "path",
             "*",
@@ -339,6 +339,10 @@ mod tests {
         ] {
             assert_eq!(fits(selector), Some(true), "{selector}");
         }
+    }
+
+    #[test]
+    fn an_element_is_not_found_by_what_others_are() {
         for selector in [
             "rect",
             ".in",
@@ -358,6 +362,10 @@ mod tests {
         ] {
             assert_eq!(fits(selector), Some(false), "{selector}");
         }
+    }
+
+    #[test]
+    fn what_is_not_read_is_no_selector() {
         for selector in [
             "",
             "a + path",

@@ -21,7 +21,8 @@ mod compared;
 mod order;
 mod outline;
 
-use super::{Shape, hidden};
+use super::Shape;
+use crate::between::form;
 use compared::{Compared, Points, is_same};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
@@ -100,7 +101,7 @@ impl Into<'_> {
         let part = &mut self.scene.parts[place];
         let (name, kept) = (part.name.clone(), unspoken(part, &shape));
         if !kept.is_empty() && part.closed != shape.closed {
-            shape.name = free(&shape.name, &self.places);
+            shape.name = self.free(&shape.name);
             let new = self.add(shape);
             return self.told(new, Change::Beside(name));
         }
@@ -121,6 +122,13 @@ impl Into<'_> {
         self.scene.parts.push(Part { name: name.clone(), depth: self.depth, ..part_of(shape) });
         self.depth += 1.0;
         name
+    }
+
+    /// A name with a number that neither a part nor another shape of the file has.
+    fn free(&self, name: &str) -> String {
+        let mut numbered = (2..).map(|count| format!("{name} {count}"));
+        let taken = |name: &String| self.places.contains_key(name) || self.named.contains(name);
+        numbered.find(|name| !taken(name)).unwrap_or_default()
     }
 
     fn told(&mut self, name: String, change: Change) {
@@ -162,12 +170,6 @@ fn is_still(part: &Part) -> bool {
     contours.next().is_none_or(|first| contours.all(|other| is_same(first, other)))
 }
 
-/// A name that no part has yet.
-fn free(name: &str, places: &BTreeMap<String, usize>) -> String {
-    let numbered = (2..).map(|count| format!("{name} {count}"));
-    numbered.into_iter().find(|name| !places.contains_key(name)).unwrap_or_default()
-}
-
 /// A part that is as the file shows it.
 fn part_of(shape: Shape) -> Part {
     let mut part = Part { closed: shape.closed, tracks: shown(&shape), ..Part::default() };
@@ -183,7 +185,7 @@ fn shown(shape: &Shape) -> BTreeMap<FrameNumber, Vec<Point>> {
         (Some((first, _)), Some((last, _))) if first < last => (*first..=*last).collect(),
         _ => Some(shape.extent.shown()).filter(|shown| shown.len() > 1).unwrap_or_default(),
     };
-    frames.into_iter().map(|frame| (frame, hidden::form(&shape.keys, frame))).collect()
+    frames.into_iter().map(|frame| (frame, form(&shape.keys, frame))).collect()
 }
 
 /// Brings a part up to date with the shape of its name.
@@ -221,7 +223,7 @@ fn is_comparable(part: &Part, shape: &Shape) -> bool {
     let still = is_still(part);
     let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
     let own = || part.keys.iter().filter(|(frame, _)| spoken(frame));
-    let exact = || own().next().is_some() && own().all(|(at, key)| is_same(key, &hidden::form(&shape.keys, *at)));
+    let exact = || own().next().is_some() && own().all(|(at, key)| is_same(key, &form(&shape.keys, *at)));
     part.closed == shape.closed
         && contours.peek().is_some()
         && contours.all(|points| points.len() == count)
@@ -243,7 +245,7 @@ fn is_same_outline(part: &Part, shape: &Shape, footage: &Footage) -> bool {
 /// What the file shows on a frame; `None` where it hides the shape.
 fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
     let shown = shape.keys.contains_key(&frame) || !shape.extent.hides(frame);
-    shown.then(|| hidden::form(&shape.keys, frame))
+    shown.then(|| form(&shape.keys, frame))
 }
 
 /// Changes a part where the file shows another contour, or another presence. Returns the frames.
@@ -263,7 +265,7 @@ fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &impl Comp
         let file = of_file(shape, frame).filter(|_| has || shape.extent.has_between_keys(frame));
         let is_other = match &file {
             Some(file) if has => !compared.is_same(&own, frame, file),
-            Some(file) => !(is_undecided(&own, frame) && is_same(&hidden::form(&own.keys, frame), file)),
+            Some(file) => !(is_undecided(&own, frame) && is_same(&form(&own.keys, frame), file)),
             None => has || is_undecided(&own, frame),
         };
         if is_other {

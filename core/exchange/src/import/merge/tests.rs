@@ -215,9 +215,18 @@ fn a_range_of_frames_says_nothing_of_others() {
     let finer = Shape { keys: cut.keys.iter().map(|(frame, points)| (*frame, more(points))).collect(), ..cut.clone() };
     let (parts, told) = merged(finer);
     assert_eq!((&told.taken[0].change, parts[0].keys[&5].len()), (&Change::Frames(vec![5]), 3));
-    let (parts, told) = merged(Shape { closed: false, ..cut });
+    let (parts, told) = merged(Shape { closed: false, ..cut.clone() });
     assert_eq!((parts.len(), &parts[0], parts[1].name.as_str()), (2, &part, "arm 2"));
     assert_eq!(told.taken[0], Taken { name: "arm 2".into(), change: Change::Beside("arm".into()) });
+}
+
+#[test]
+fn a_part_beside_another_one_takes_no_name_of_the_file() {
+    let mut scene = Scene { footage: footage(), parts: vec![tracked()] };
+    let open = Shape { keys: [(5, at(5))].into(), closed: false, extent: extent([5, 5], &[]), ..written(&tracked()) };
+    let other = Shape { name: "arm 2".into(), ..open.clone() };
+    let names: Vec<_> = into_scene(&mut scene, vec![open, other]).taken.into_iter().map(|taken| taken.name).collect();
+    assert_eq!(names, ["arm 3", "arm 2"]);
 }
 
 #[test]
@@ -228,7 +237,7 @@ fn a_part_that_is_not_tracked_is_hidden_as_in_the_file() {
     let mut shape = Shape { keys: part.keys.clone(), ..written(&tracked()) };
     assert_eq!(put(part.clone(), shape.clone()).1, Change::Nothing);
     for frame in [4, 7] {
-        shape.keys.insert(frame, hidden::form(&part.keys, frame));
+        shape.keys.insert(frame, form(&part.keys, frame));
     }
     (shape.absent, shape.extent) = (vec![[5, 6]], extent([2, 9], &[[5.0, 6.0]]));
     let (found, change) = put(part.clone(), shape.clone());
