@@ -5,7 +5,7 @@
 
 use super::bezier::Curves;
 use super::knot::Knot;
-use crate::between::form;
+use crate::between::{Key, on_way};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
@@ -125,10 +125,10 @@ impl<'a> Outlines<'a> {
         if !self.part.tracks.is_empty() || self.part.is_absent(frame) {
             return None;
         }
-        let keys = &self.part.keys;
-        let between = keys.range(..frame).next().is_some() && keys.range(frame..).next().is_some();
-        let points = Some(form(keys, frame)).filter(|points| between && points.len() == self.points);
-        points.map(|points| points.into_iter().map(Knot::bare).collect())
+        let is_contour = |(_, points): &Key| is_contour(points, self.points);
+        let before = self.part.keys.range(..frame).rev().find(is_contour)?;
+        let after = self.part.keys.range(frame..).find(is_contour)?;
+        Some(on_way(before, after, frame).into_iter().map(Knot::bare).collect())
     }
 
     /// The frames from `first` to `last` that show a contour, each with it.
@@ -142,9 +142,14 @@ impl<'a> Outlines<'a> {
     }
 }
 
-/// The control points of a part on a frame. A document may hold a frame with another number of points: it is no contour of this part.
+/// The control points of a part on a frame.
 fn control(part: &Part, count: usize, frame: FrameNumber) -> Option<&Vec<Point>> {
-    part.points_at(frame).filter(|points| !points.is_empty() && points.len() == count)
+    part.points_at(frame).filter(|points| is_contour(points, count))
+}
+
+/// Whether these are a contour of a part of `count` control points. A document may hold a frame with none, or with another number.
+fn is_contour(points: &[Point], count: usize) -> bool {
+    !points.is_empty() && points.len() == count
 }
 
 /// Points of snapped paths about `spacing` pixels apart.
@@ -182,6 +187,23 @@ mod tests {
         part.tracks.insert(2, square.clone());
         let frames: Vec<_> = Outlines::new(&part, 1.0).within(0, 2).into_iter().map(|(frame, _)| frame).collect();
         assert_eq!(frames, [0, 2]);
+    }
+
+    #[test]
+    fn keys_that_are_no_contour_lead_nowhere() {
+        let line = [(0.0, 0.0), (4.0, 0.0)].map(Point::from).to_vec();
+        let shown = |keys: [Vec<Point>; 3]| {
+            let part = Part { keys: [0, 4, 8].into_iter().zip(keys).collect(), ..Part::default() };
+            Outlines::new(&part, 1.0).shown_within(0, 8)
+        };
+        assert!(shown([const { Vec::new() }; 3]).is_empty(), "no points are no contour");
+        assert!(
+            shown([vec![], line.clone(), line.clone()]).is_empty(),
+            "the first key says how many points a part has"
+        );
+        let bent = shown([line.clone(), vec![Point::new(9.0, 9.0); 3], line]);
+        assert_eq!(bent.len(), 9, "the way goes past a key with another number of points");
+        assert!(bent.iter().all(|(_, knots)| knots.len() == 2 && knots[1].at == Point::new(4.0, 0.0)));
     }
 
     #[test]
