@@ -19,7 +19,7 @@ pub mod after_effects;
 pub mod archive;
 mod bezier;
 pub mod fusion;
-mod knot;
+pub(crate) mod knot;
 mod names;
 pub mod natron;
 pub mod natron_project;

@@ -8,7 +8,7 @@
 //! a key there, and a tracked contour if it is between two keys of the file. Hidden frames are compared in the same way.
 //!
 //! A shape with another number of points is compared as an outline (`outline`): the file of a snapped part has the points of its
-//! curve. Where the outline is another one, it becomes a key with control points on it and with its own paths between them. But if the file speaks of all frames of a part, and
+//! curve, or those of Bézier curves near it (`curved`). Where the outline is another one, it becomes a key with control points on it and with its own paths between them. But if the file speaks of all frames of a part, and
 //! the outline is another one on all of them, then the shape was drawn anew. It replaces the part: only the depth and the colour stay.
 //!
 //! A shape that is open where its part is closed, or closed where it is open, replaces it too. If the part has contours of which the file does not speak, it is a
@@ -18,12 +18,14 @@
 //! another order in the file get depths for that order (`order`).
 
 mod compared;
+mod curved;
 mod order;
 mod outline;
 
 use super::Shape;
 use crate::between::form;
 use compared::{Compared, Points, is_same};
+use curved::Curved;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
@@ -191,13 +193,7 @@ fn shown(shape: &Shape) -> BTreeMap<FrameNumber, Vec<Point>> {
 /// Brings a part up to date with the shape of its name.
 fn update(part: &mut Part, shape: Shape, footage: &Footage) -> Change {
     let same_border = |part: &mut Part| merge_falloff(&mut part.falloff, shape.falloff);
-    let frames = if is_comparable(part, &shape) {
-        Some(merge(part, &shape, footage, &Points))
-    } else if part.closed == shape.closed && is_same_outline(part, &shape, footage) {
-        Some(merge(part, &shape, footage, &outline::Outline))
-    } else {
-        None
-    };
+    let frames = compared_with(part, &shape, footage).map(|compared| merge(part, &shape, footage, &*compared));
     if let Some(frames) = frames {
         return if same_border(part) && frames.is_empty() { Change::Nothing } else { Change::Frames(frames) };
     }
@@ -231,15 +227,26 @@ fn is_comparable(part: &Part, shape: &Shape) -> bool {
         && (!curved || exact())
 }
 
-/// Whether the outlines of a shape and of a part can be compared: the part has frames of which the file does not speak, or both are the same
-/// somewhere.
-fn is_same_outline(part: &Part, shape: &Shape, footage: &Footage) -> bool {
+/// How a part is compared with the shape of its name; `None` if the shape is another one. That is not so if the part has frames of which the file does not
+/// speak, or if both are the same somewhere.
+fn compared_with(part: &Part, shape: &Shape, footage: &Footage) -> Option<Box<dyn Compared>> {
+    if is_comparable(part, shape) {
+        return Some(Box::new(Points));
+    }
+    if part.closed != shape.closed || !outline::has_joints(part) {
+        return None;
+    }
     let still = is_still(part);
     let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
     let same =
         |frame: FrameNumber| of_file(shape, frame).is_some_and(|file| outline::Outline.is_same(part, frame, &file));
-    outline::has_joints(part)
-        && (!unspoken(part, shape).is_empty() || (footage.first..=footage.last).filter(spoken).any(same))
+    if (footage.first..=footage.last).filter(spoken).any(same) {
+        return Some(Box::new(outline::Outline));
+    }
+    if let Some(curved) = Curved::of(part, shape, spoken) {
+        return Some(Box::new(curved));
+    }
+    (!unspoken(part, shape).is_empty()).then(|| Box::new(outline::Outline) as Box<dyn Compared>)
 }
 
 /// What the file shows on a frame; `None` where it hides the shape.
@@ -249,7 +256,7 @@ fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
 }
 
 /// Changes a part where the file shows another contour, or another presence. Returns the frames.
-fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &impl Compared) -> Vec<FrameNumber> {
+fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &dyn Compared) -> Vec<FrameNumber> {
     let known = part.keys.keys().chain(part.tracks.keys()).chain(shape.keys.keys());
     let hidden = (footage.first..=footage.last).filter(|&frame| part.is_absent(frame));
     let unseen = (footage.first..=footage.last).filter(|&frame| shape.extent.hides(frame));

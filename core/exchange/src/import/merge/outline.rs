@@ -15,7 +15,7 @@ use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
 /// Distance from a path within which a point lies on it, in pixels: formats round points, and chords cut a path's bends.
-const NEAR: f64 = 0.05;
+pub(super) const NEAR: f64 = 0.05;
 /// Greatest difference in length of outlines that are the same, as a share.
 const SHARE: f64 = 0.02;
 
@@ -28,21 +28,38 @@ impl Compared for Outline {
     }
 
     fn taken(&self, part: &Part, frame: FrameNumber, file: Vec<Point>) -> (Vec<Point>, Vec<Vec<Point>>) {
-        let like = joined(part).min_by_key(|&other| (i64::from(other) - i64::from(frame)).abs());
-        let Some((points, own)) = like.and_then(|like| Some((part.points_at(like)?, paths(part, like)?))) else {
-            return (file, Vec::new());
-        };
-        let line = Line::new(&file, part.closed);
-        let places = places(&line, &own, points.len());
-        let at = |k: usize| line.at(places[k].0);
-        let kept = |k: usize| if places[k].1 { points[k] } else { at(k) };
-        let paths = (0..own.len()).map(|k| {
-            let (from, to) = (places[k], places[(k + 1) % places.len()]);
-            let path = line.between(from.0, to.0, k + 1 == own.len());
-            if from.1 && to.1 && lies_on(&path, &own[k], false) { own[k].clone() } else { path }
-        });
-        (((0..points.len()).map(kept)).collect(), paths.collect())
+        taken(part, frame, &file, |_| None)
     }
+}
+
+/// The control points of the outline of a file, and the paths between them. `written` gives the outline that an export writes on a frame, if that is another
+/// one than the part's own.
+pub(super) fn taken(
+    part: &Part,
+    frame: FrameNumber,
+    file: &[Point],
+    written: impl Fn(FrameNumber) -> Option<Vec<Point>>,
+) -> (Vec<Point>, Vec<Vec<Point>>) {
+    let like = joined(part).min_by_key(|&other| (i64::from(other) - i64::from(frame)).abs());
+    let found = like.and_then(|like| Some((part.points_at(like)?, paths(part, like)?, written(like))));
+    let Some((points, own, written)) = found else { return (file.to_vec(), Vec::new()) };
+    let cut = |line: &[Point]| {
+        let line = Line::new(line, part.closed);
+        let places = places(&line, &own, points.len());
+        let path = |k: usize| line.between(places[k].0, places[(k + 1) % places.len()].0, k + 1 == own.len());
+        let paths: Vec<Vec<Point>> = (0..own.len()).map(path).collect();
+        (line, places, paths)
+    };
+    let (line, places, mut paths) = cut(file);
+    let written = written.map(|written| cut(&written).2);
+    let known = written.as_ref().unwrap_or(&own);
+    for (k, path) in paths.iter_mut().enumerate() {
+        if places[k].1 && places[(k + 1) % places.len()].1 && lies_on(path, &known[k], false) {
+            path.clone_from(&own[k]);
+        }
+    }
+    let kept = |k: usize| if places[k].1 { points[k] } else { line.at(places[k].0) };
+    ((0..points.len()).map(kept).collect(), paths)
 }
 
 /// Whether a part has a contour whose joints can be found on an outline.
@@ -63,7 +80,7 @@ fn joined(part: &Part) -> impl Iterator<Item = FrameNumber> + '_ {
 }
 
 /// Whether a line lies on another one along its whole length.
-fn lies_on(line: &[Point], other: &[Point], closed: bool) -> bool {
+pub(super) fn lies_on(line: &[Point], other: &[Point], closed: bool) -> bool {
     let (length, whole) = (polyline::length(line, closed), polyline::length(other, closed));
     (length - whole).abs() <= SHARE * length.max(1.0)
         && line.iter().all(|&p| polyline::distance(p, other, closed) <= NEAR)

@@ -2,12 +2,15 @@
 //!
 //! Public descriptions disagree on which handle of a point leads forward, and on whether handles are places or offsets from their
 //! point. Exporters write both forms. The reading with the shortest control polygon over all keys of a shape is taken: handles are
-//! near their points in one reading only. Of equal readings it is the one with places.
+//! near their points in one reading only. Where that is not clear, as for a few points with long handles, it is the reading that an export of ours has.
 
 use super::super::path::Path;
 use super::key::{Form, Knot};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Footage;
+
+/// Share of the length of the reading with places, the second point forward, that another one must be below.
+const CLEARLY: f64 = 0.8;
 
 /// How the handles of a shape are written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,14 +22,16 @@ pub(super) struct Reading {
 }
 
 impl Reading {
-    /// The reading with the shortest control polygons of all forms; the first of equal ones.
+    /// The reading with the shortest control polygons of all forms, if it is clearly the shortest.
     pub fn of(keys: &[&Form], footage: &Footage) -> Self {
         let middle = Point::new(footage.width as f64, footage.height as f64) * 0.5;
         let forms =
             [None, Some(middle)].into_iter().flat_map(|origin| [false, true].map(|swapped| Self { swapped, origin }));
-        let mut best = (f64::INFINITY, Self { swapped: false, origin: None });
+        let known = Self { swapped: false, origin: None };
+        let length = |form: Self| keys.iter().map(|key| length(&form.path(key))).sum::<f64>();
+        let mut best = (CLEARLY * length(known), known);
         for form in forms {
-            let length: f64 = keys.iter().map(|key| length(&form.path(key))).sum();
+            let length = length(form);
             if length < best.0 {
                 best = (length, form);
             }
