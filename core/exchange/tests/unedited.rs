@@ -13,6 +13,9 @@ use std::collections::BTreeMap;
 const COUNT: FrameNumber = 10;
 const NAMES: [&str; 6] = ["arm", "arm 2", "left leg", "Hütchen <1>", "part-0", "x\"y'z"];
 
+/// How a range is written.
+const DETAILS: [Detail; 3] = [Detail::Spacing(2.0), Detail::Spacing(9.0), Detail::Bezier(0.5)];
+
 /// What a part is like: whether it is closed, and its points on the first frame.
 type Form = (bool, Vec<(f64, f64)>);
 
@@ -85,9 +88,9 @@ fn scene() -> impl Strategy<Value = Scene> {
     })
 }
 
-/// The shapes of each format after export.
-fn read(scene: &Scene, detail: Detail) -> Vec<(&'static str, Result<Shapes, ImportError>)> {
-    let (footage, first) = (&scene.footage, scene.footage.first);
+/// The shapes of each format after export, read for a whole scene.
+fn read(scene: &Scene, whole: &Scene, detail: Detail) -> Vec<(&'static str, Result<Shapes, ImportError>)> {
+    let (footage, first) = (&whole.footage, whole.footage.first);
     let options = |motion| match detail {
         Detail::Spacing(spacing) => SvgOptions { motion, spacing, bezier: None },
         Detail::Bezier(tolerance) => SvgOptions { motion, bezier: Some(tolerance), ..SvgOptions::default() },
@@ -111,7 +114,7 @@ fn told(part: &Part) -> BTreeMap<FrameNumber, (bool, bool)> {
 }
 
 fn check(scene: &Scene, detail: Detail) -> Result<(), TestCaseError> {
-    for (format, found) in read(scene, detail) {
+    for (format, found) in read(scene, scene, detail) {
         let mut found = found.map_err(|error| TestCaseError::fail(format!("{format}: {error}")))?;
         for (own, there) in renamed(scene, format) {
             found.shapes.iter_mut().filter(|shape| shape.name == there).for_each(|shape| shape.name = own.to_owned());
@@ -131,6 +134,44 @@ fn check(scene: &Scene, detail: Detail) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// A range of frames of a scene, as an export of it has them.
+fn range(scene: &Scene, [first, last]: [FrameNumber; 2]) -> Scene {
+    let mut scene = scene.clone();
+    (scene.footage.first, scene.footage.last) = (first, last);
+    let within = |frame: &FrameNumber| (first..=last).contains(frame);
+    for part in &mut scene.parts {
+        part.keys.retain(|frame, _| within(frame));
+        part.tracks.retain(|frame, _| within(frame));
+        part.curves.retain(|frame, _| within(frame));
+    }
+    scene
+}
+
+/// The range comes back into the whole scene.
+fn check_range(scene: &Scene, [first, count]: [FrameNumber; 2], detail: Detail) -> Result<(), TestCaseError> {
+    let from = scene.footage.first + first;
+    let part = range(scene, [from, (from + count).min(scene.footage.last)]);
+    for (format, found) in read(&part, scene, detail) {
+        // A range without any part has no shape.
+        let Ok(mut found) = found else { continue };
+        for (own, there) in renamed(&part, format) {
+            found.shapes.iter_mut().filter(|shape| shape.name == there).for_each(|shape| shape.name = own.to_owned());
+        }
+        let mut back = scene.clone();
+        let merged = import::into_scene(&mut back, found.shapes);
+        for taken in &merged.taken {
+            prop_assert!(taken.change == Change::Nothing, "{format}: {taken:?}, {:?}", found.warnings);
+        }
+        prop_assert!(back == *scene, "{format}");
+    }
+    Ok(())
+}
+
+/// A scene whose parts are tracked: others have contours between their keys that a range makes keys of.
+fn tracked() -> impl Strategy<Value = Scene> {
+    scene().prop_filter("tracked", |scene| scene.parts.iter().all(|part| !part.tracks.is_empty()))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 16, ..ProptestConfig::default() })]
 
@@ -142,5 +183,17 @@ proptest! {
     #[test]
     fn curves_that_were_not_edited_change_nothing(scene in scene()) {
         check(&scene, Detail::Bezier(0.3))?;
+    }
+
+    #[test]
+    fn a_range_that_was_not_edited_changes_nothing(
+        scene in tracked(), first in 0..COUNT, count in 0..COUNT, detail in select(&DETAILS[..]),
+    ) {
+        check_range(&scene, [first, count], detail)?;
+    }
+
+    #[test]
+    fn coarse_points_that_were_not_edited_change_nothing(scene in scene(), spacing in 0.5..40.0) {
+        check(&scene, Detail::Spacing(spacing))?;
     }
 }

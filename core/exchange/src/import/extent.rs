@@ -4,10 +4,10 @@
 //! their last key, because formats know no other way, and that says nothing of the frames there. What the artist drew on them must stay. So:
 //!
 //! - From a shape's first to its last key a file speaks of every frame, also of those on which it hides the shape.
-//! - Beyond them it speaks only if it says when the shape is shown and does not end that time just with the keys. An export writes
-//!   the time of its keys, so that time says nothing; another one was set by hand.
-//! - A shape with one key stands still. It speaks of the frames on which the file says that it is shown. If the file says nothing of that, it speaks of all
-//!   frames of a part that stands still too, and of the key's frame otherwise.
+//! - Before the first key it speaks only if it says from when on the shape is shown, and that is not just the first key. An export writes
+//!   the time of its keys, so that time says nothing; another one was set by hand. The same holds after the last key.
+//! - A shape that stands still, without any key on a frame, speaks of the frames on which the file says that it is shown. If the file says nothing of that, it
+//!   speaks of all frames of a part that stands still too, and of its own frame otherwise.
 //! - A drawing that is no film speaks of its own frame.
 
 use super::hidden::joined;
@@ -24,6 +24,8 @@ pub struct Extent {
     stated: bool,
     /// Whether it is a drawing of one frame and no film.
     drawing: bool,
+    /// Whether its keys stand on frames, also if there is only one.
+    keyed: bool,
     /// The first and the last frame of the footage.
     footage: [FrameNumber; 2],
 }
@@ -35,7 +37,12 @@ impl Extent {
         let (away, footage) = (joined(hidden, footage), [footage.first, footage.last]);
         let never = away == [footage];
         let (away, stated) = if never { (Vec::new(), false) } else { (away, !hidden.is_empty()) };
-        Self { keys, away, stated, drawing: false, footage }
+        Self { keys, away, stated, drawing: false, keyed: keys[0] < keys[1], footage }
+    }
+
+    /// The same for a shape whose keys stand on frames, or do not.
+    pub(super) fn of_keys(self, keyed: bool) -> Self {
+        Self { keyed: keyed || self.keyed, ..self }
     }
 
     /// The same for a drawing of one frame.
@@ -73,11 +80,12 @@ impl Extent {
             return true;
         }
         let Some([first, last]) = self.span().filter(|_| !self.drawing) else { return false };
-        match (self.keys[0] == self.keys[1], self.stated) {
-            (true, true) => (first..=last).contains(&frame),
-            (true, false) => still,
-            (false, stated) => stated && [first, last] != self.shown_keys(),
+        if !self.keyed {
+            return (self.stated || still) && (first..=last).contains(&frame);
         }
+        let (begin, end) = (first > self.footage[0], last < self.footage[1]);
+        let [from, to] = self.shown_keys();
+        if frame < self.keys[0] { begin && first != from } else { end && last != to }
     }
 
     /// The first and the last frame on which the file shows the shape.
@@ -121,7 +129,14 @@ mod tests {
         assert_eq!(spoken([4, 8], &[], false), cut, "keys alone");
         assert_eq!(spoken([4, 8], &[[-far, 3.0], [9.0, far]], false), cut, "the time of an export");
         assert_eq!(spoken([4, 8], &[[-far, 3.0], [6.0, 6.0], [9.0, far]], false), cut);
-        assert_eq!(spoken([4, 8], &[[11.0, far]], false), all, "hidden from 11 on, by hand");
+        assert_eq!(spoken([4, 8], &[[11.0, far]], false), (4..=12).collect::<Vec<_>>(), "hidden from 11 on, by hand");
+        assert_eq!(
+            spoken([4, 8], &[[-far, 2.0], [9.0, far]], false),
+            (1..=8).collect::<Vec<_>>(),
+            "hidden up to 2, by hand"
+        );
+        assert_eq!(spoken([4, 8], &[[-far, 3.0]], false), cut, "it comes within a range that was exported");
+        assert_eq!(spoken([4, 8], &[[9.0, far]], false), cut, "it goes within such a range");
         assert_eq!(spoken([1, 12], &[[7.0, far]], false), all, "keys that are hidden now");
         assert_eq!(spoken([4, 8], &[[-far, far]], true), cut, "never shown: only its keys are taken");
     }
@@ -135,6 +150,15 @@ mod tests {
             assert_eq!(spoken([5, 5], &[[-far, 4.0], [6.0, far]], still), [5], "an export of one frame");
             assert_eq!(spoken([5, 5], &[[-far, 2.0], [4.0, 4.0], [8.0, far]], still), [3, 4, 5, 6, 7]);
             assert_eq!(spoken([5, 5], &[[-far, 0.0], [13.0, far]], still).len(), 12);
+        }
+    }
+
+    #[test]
+    fn one_key_on_a_frame_speaks_of_that_frame() {
+        let footage = Footage { pattern: "%d".into(), first: 1, last: 12, fps: 1.0, width: 9, height: 9, held: false };
+        for hidden in [&[][..], &[[f64::NEG_INFINITY, 4.0]], &[[6.0, f64::INFINITY]]] {
+            let extent = Extent::new([5, 5], hidden, &footage).of_keys(true);
+            assert_eq!((1..=12).filter(|&frame| extent.speaks_of(frame, true)).collect::<Vec<_>>(), [5], "{hidden:?}");
         }
     }
 }

@@ -137,13 +137,14 @@ mod tests {
 
     #[test]
     fn a_part_of_the_name_becomes_the_shape_and_others_lie_in_front() {
+        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 1.0, width: 9, height: 9, held: false };
         let shape = |name: &str| Shape {
             name: name.into(),
             closed: true,
             keys: BTreeMap::from([(2, vec![Point::ONE, Point::X, Point::Y])]),
             absent: Vec::new(),
             falloff: None,
-            extent: Extent::default(),
+            extent: Extent::new([2, 2], &[], &footage),
         };
         let old = Part {
             name: "arm".into(),
@@ -151,12 +152,11 @@ mod tests {
             tracks: BTreeMap::from([(1, vec![Point::ZERO])]),
             ..Part::default()
         };
-        let footage = Footage { pattern: "%d".into(), first: 0, last: 9, fps: 1.0, width: 9, height: 9, held: false };
-        let mut scene = Scene { footage, parts: vec![old] };
+        let mut scene = Scene { footage: footage.clone(), parts: vec![old] };
         into_scene(&mut scene, vec![shape("leg"), shape("arm"), shape("head")]);
         let found: Vec<_> = scene.parts.iter().map(|part| (part.name.as_str(), part.depth)).collect();
         assert_eq!(found, [("arm", 3.5), ("leg", 4.0), ("head", 5.0)]);
-        assert!(scene.parts[0].tracks.is_empty() && scene.parts[0].closed);
+        assert!(scene.parts[0].keys.contains_key(&2) && scene.parts[0].closed);
         scene.parts[2].name = "head ".into();
         into_scene(&mut scene, vec![shape("head")]);
         assert_eq!((scene.parts.len(), scene.parts[2].name.as_str()), (3, "head "));

@@ -23,6 +23,7 @@ use super::limits::{Points, near};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{LeftOut, parsed};
+use super::range::Kept;
 use super::svg_animation::{Keyed, hidden as hidden_times, keyed};
 use super::svg_edited::{Edit, edit};
 use super::svg_elements::{GROUPS, NOT_DRAWN, SHAPES, WITHOUT_OUTLINE};
@@ -34,6 +35,7 @@ use super::svg_style::Styles;
 use super::svg_transform::{Places, joined, moved};
 use super::svg_view::{View, nested, viewed};
 use super::{ImportError, Shape, Shapes};
+use crate::between::{Keys, form};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
 use roxmltree::Node;
@@ -72,7 +74,7 @@ pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str])
     let film = film(root, footage);
     let still = film.as_ref().map_or(still, |film| still.clamp(film.first, film.last));
     let read = |strokes| {
-        let mut reader = Reader::new(film.as_ref().unwrap_or(footage), still, &styles, &clips);
+        let mut reader = Reader::new([footage, film.as_ref().unwrap_or(footage)], still, &styles, &clips);
         (reader.strokes, reader.called) = (strokes, Called::new(&document, parts));
         reader.is_film = film.is_some();
         if styles.own(root, "transform").is_some_and(|text| text != "none") {
@@ -100,11 +102,12 @@ pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str])
     Ok(Shapes { shapes: reader.shapes, warnings })
 }
 
-/// The footage of the frames of which an export is a film. Others begin with the first frame of the footage.
+/// The footage of the frames of which an export is a film, if the document has some of them. Others begin with the first frame of the footage.
 fn film(root: Node, footage: &Footage) -> Option<Footage> {
     let frame = |name| root.attribute(name)?.trim().parse::<FrameNumber>().ok();
-    let (first, last) = (frame(FIRST)?.max(footage.first), frame(LAST)?.min(footage.last));
-    (first <= last && frame(FIRST)? == first).then(|| Footage { first, last, ..footage.clone() })
+    let (first, last) = (frame(FIRST)?, frame(LAST)?);
+    let meets = first <= last && first <= footage.last && footage.first <= last;
+    meets.then(|| Footage { first, last, ..footage.clone() })
 }
 
 /// How many elements of an export are left out.
@@ -130,6 +133,8 @@ impl Drawn {
 
 struct Reader<'a> {
     footage: &'a Footage,
+    /// The frames that the file shows: its own, or those of the footage.
+    film: &'a Footage,
     styles: &'a Styles,
     still: FrameNumber,
     shapes: Vec<Shape>,
@@ -154,9 +159,10 @@ struct Reader<'a> {
 type Frames = Vec<(FrameNumber, Vec<Path>)>;
 
 impl<'a> Reader<'a> {
-    fn new(footage: &'a Footage, still: FrameNumber, styles: &'a Styles, clips: &'a Clips<'a>) -> Self {
+    fn new([footage, film]: [&'a Footage; 2], still: FrameNumber, styles: &'a Styles, clips: &'a Clips<'a>) -> Self {
         Self {
             footage,
+            film,
             styles,
             still,
             shapes: Vec::new(),
@@ -266,8 +272,8 @@ impl<'a> Reader<'a> {
     }
 
     fn shape(&mut self, node: Node, text: &str, transform: Transform) -> Result<(), ImportError> {
-        let found = keyed(node, self.footage)?;
-        if let Some(told) = found.as_ref().and_then(|found| found.kept.told(&self.called.name(node), self.footage)) {
+        let found = keyed(node, self.film)?;
+        if let Some(told) = found.as_ref().and_then(|found| found.kept.told(&self.called.name(node), self.film)) {
             self.left_out.push(node, told);
         }
         let own_film = self.is_film && found.is_some();
@@ -281,13 +287,15 @@ impl<'a> Reader<'a> {
         let Some((_, start)) = frames.first() else { return Ok(()) };
         let made = self.contours(node, &frames)?;
         let bounds = self.bounds(node, start, &made);
-        let hidden = hidden_times(node, self.footage);
+        let hidden = hidden_times(node, self.film);
+        let shown = self.shown();
         let all = self.shapes.len();
         for (number, contours) in made.into_iter().enumerate().filter(|(number, _)| bounds[*number] != Bound::Hole) {
             let name = self.names.free(&self.called.name(node));
             self.called.took(node, &name);
             let keys = frames.iter().map(|(frame, _)| *frame).zip(contours).collect();
-            let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, self.footage);
+            let keys = self.cut(node, &name, keys);
+            let (shape, never) = Shape::new((name, start[number].closed), keys, &hidden, &shown);
             never.into_iter().for_each(|never| self.left_out.push(node, never));
             // Another drawing is of one frame; it does not say that the part stands still.
             let extent = if self.is_film { shape.extent } else { shape.extent.of_drawing() };
@@ -295,6 +303,21 @@ impl<'a> Reader<'a> {
         }
         self.tell_lost(node, all, bounds.iter().any(|bound| *bound != Bound::Area));
         Ok(())
+    }
+
+    /// The frames of the footage that the file shows.
+    fn shown(&self) -> Footage {
+        let (first, last) = (self.film.first.max(self.footage.first), self.film.last.min(self.footage.last));
+        Footage { first, last, ..self.footage.clone() }
+    }
+
+    /// The keys within the footage. Where a film goes on beyond one of its ends, the form there is a key, and the keys beyond are told.
+    fn cut(&mut self, node: Node, name: &str, keys: Keys) -> Keys {
+        let kept = Kept::of(keys.keys().map(|&frame| f64::from(frame)), self.footage);
+        if let Some(told) = kept.told(name, self.footage) {
+            self.left_out.push(node, told);
+        }
+        kept.frames.iter().map(|&frame| (frame, form(&keys, frame))).collect()
     }
 
     /// The contours of each sub-path on all keys.

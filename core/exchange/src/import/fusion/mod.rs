@@ -213,11 +213,17 @@ impl<'a, 'b> Reader<'a, 'b> {
             NoContours::Unequal => Fault::Omitted("its keys are of several kinds".into()),
         })?;
         self.left = left;
-        self.add(mask, forms[0].closed, frames.into_iter().zip(made).collect())
+        let keyed = timing.frames().next().is_some();
+        self.add(mask, [forms[0].closed, keyed], frames.into_iter().zip(made).collect())
     }
 
-    /// Adds a shape with these keys.
-    fn add(&mut self, mask: &Mask<'a, 'b>, closed: bool, keys: BTreeMap<FrameNumber, Vec<Point>>) -> Result<(), Fault> {
+    /// Adds a shape with these keys, which stand on frames or do not.
+    fn add(
+        &mut self,
+        mask: &Mask<'a, 'b>,
+        [closed, keyed]: [bool; 2],
+        keys: BTreeMap<FrameNumber, Vec<Point>>,
+    ) -> Result<(), Fault> {
         let level = self.level(mask);
         let at = place(self.text, mask.value.start);
         let name = &mask.name;
@@ -227,7 +233,7 @@ impl<'a, 'b> Reader<'a, 'b> {
         let hidden = level.map_or(Vec::new(), |level| level.zeros(false));
         let (shape, never) = Shape::new((self.names.free(name), closed), keys, &hidden, self.footage);
         self.found.warnings.extend(never.map(|never| format!("{at}: {never}")));
-        self.found.shapes.push(shape);
+        self.found.shapes.push(Shape { extent: shape.extent.of_keys(keyed), ..shape });
         Ok(())
     }
 

@@ -8,7 +8,7 @@
 //! a key there, and a tracked contour if it is between two keys of the file. Hidden frames are compared in the same way.
 //!
 //! A shape with another number of points is compared as an outline (`outline`): the file of a snapped part has the points of its
-//! curve, or those of Bézier curves near it (`curved`). Where the outline is another one, it becomes a key with control points on it and with its own paths between them. But if the file speaks of all frames of a part, and
+//! curve, or of Bézier curves near it (`written`). Where the outline is another one, it becomes a key with control points on it and with its own paths between them. But if the file speaks of all frames of a part, and
 //! the outline is another one on all of them, then the shape was drawn anew. It replaces the part: only the depth and the colour stay.
 //!
 //! A shape that is open where its part is closed, or closed where it is open, replaces it too. If the part has contours of which the file does not speak, it is a
@@ -18,17 +18,17 @@
 //! another order in the file get depths for that order (`order`).
 
 mod compared;
-mod curved;
 mod order;
 mod outline;
+mod written;
 
 use super::Shape;
 use crate::between::form;
 use compared::{Compared, Points, is_same};
-use curved::Curved;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use std::collections::{BTreeMap, BTreeSet};
+use written::Written;
 
 /// What became of a shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -240,13 +240,13 @@ fn compared_with(part: &Part, shape: &Shape, footage: &Footage) -> Option<Box<dy
     let spoken = |frame: &FrameNumber| shape.extent.speaks_of(*frame, still);
     let same =
         |frame: FrameNumber| of_file(shape, frame).is_some_and(|file| outline::Outline.is_same(part, frame, &file));
-    if (footage.first..=footage.last).filter(spoken).any(same) {
-        return Some(Box::new(outline::Outline));
+    let known: Vec<FrameNumber> = (footage.first..=footage.last).filter(spoken).collect();
+    let found = known.iter().filter(|&&frame| same(frame)).count();
+    let written = (found < known.len()).then(|| Written::of(part, shape, spoken)).flatten();
+    if let Some(written) = written {
+        return Some(Box::new(written));
     }
-    if let Some(curved) = Curved::of(part, shape, spoken) {
-        return Some(Box::new(curved));
-    }
-    (!unspoken(part, shape).is_empty()).then(|| Box::new(outline::Outline) as Box<dyn Compared>)
+    (found > 0 || !unspoken(part, shape).is_empty()).then(|| Box::new(outline::Outline) as Box<dyn Compared>)
 }
 
 /// What the file shows on a frame; `None` where it hides the shape.

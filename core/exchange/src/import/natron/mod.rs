@@ -139,7 +139,8 @@ impl Reader<'_> {
         let (falloff, hidden) = (self.falloff(item), hidden(item));
         let (shape, never) = Shape::new((name, closed), frames.into_iter().zip(made).collect(), &hidden, self.footage);
         never.into_iter().for_each(|never| self.left_out.push(item, never));
-        Ok(Shape { falloff: Some(falloff), ..shape })
+        let keyed = knots.iter().flatten().flatten().any(|channel| channel.frames().next().is_some());
+        Ok(Shape { falloff: Some(falloff), extent: shape.extent.of_keys(keyed), ..shape })
     }
 
     /// The falloff of a curve. One that cannot be read is that of a curve without one: its outline counts.

@@ -178,7 +178,8 @@ impl Reader<'_> {
         let (closed, hidden) = (keys[0].form.closed, hidden(node, self.first)?);
         let (shape, never) = Shape::new((name, closed), frames.into_iter().zip(made).collect(), &hidden, self.footage);
         never.into_iter().for_each(|never| self.left_out.push(node, never));
-        Ok(shape)
+        let keyed = property.children().any(|node| node.has_tag_name("Key"));
+        Ok(Shape { extent: shape.extent.of_keys(keyed), ..shape })
     }
 
     /// The keys of a path in the order of time, at least one.
