@@ -86,15 +86,17 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     };
     let report = given.get_one::<PathBuf>("report");
     let inputs = project::inputs(&document, from);
-    for path in [Some(to), report.map(PathBuf::as_path)].into_iter().flatten() {
-        inputs.check(path)?;
-        check_writable(path)?;
-    }
+    let check = |inputs: &Inputs| {
+        inputs.check(to)?;
+        report.map_or(Ok(()), |report| project::check_report(report, inputs, [from, to]))
+    };
+    check(&inputs)?;
+    check_writable(to)?;
     let conformed = progress::run(given, from, |bar| {
         pipeline::conform(&document, &home, &new, bar).map_err(|error| explained(error, from))
     })?;
     // The frames of the new footage are inputs too.
-    Inputs::default().footage(&conformed.document.scene.footage, &new.folder).check(to)?;
+    check(&Inputs::default().footage(&conformed.document.scene.footage, &new.folder))?;
     for text in conformed.told() {
         line("note", &format!("{}: {text}", from.display()));
     }

@@ -42,12 +42,23 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::read(from)?;
     let files = files(given, &document)?;
     let mut imported = Imported::default();
+    let mut empty = None;
     for file in &files {
-        let found = read(given, &mut document, file)?;
+        let found = match read(given, &mut document, file)? {
+            Ok(found) => found,
+            Err(nothing) => {
+                empty = Some(nothing);
+                continue;
+            }
+        };
         for warning in &found.warnings {
             line("warning", &format!("{}: {warning}", file.path.display()));
         }
         imported.join(found);
+    }
+    // A file for a frame on which no part is shown has no shape.
+    if let Some(nothing) = empty.filter(|_| imported.merged.taken.is_empty()) {
+        return Err(nothing);
     }
     let inputs = files.iter().fold(project::inputs(&document, from), |inputs, file| inputs.file(&file.path));
     inputs.check(to)?;
@@ -75,6 +86,10 @@ fn files(given: &ArgMatches, document: &Document) -> Result<Vec<Shapes>, Failure
         let message =
             format!("{}: expected a name that ends in .nk, .ntp, .fxs, .setting, .comp or .svg", shapes.display());
         return Err(Failure::Use(message));
+    };
+    let format = match format {
+        ShapeFormat::Svg { still, .. } => ShapeFormat::Svg { still, asked: given.contains_id("frame") },
+        other => other,
     };
     let is_svg = matches!(format, ShapeFormat::Svg { .. });
     // A file whose own name has a percent sign is itself.
@@ -128,22 +143,24 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern) -> 
     }
     let of = |(number, still)| Shapes {
         path: shapes.with_file_name(pattern.path(number)),
-        format: ShapeFormat::Svg { still },
+        format: ShapeFormat::Svg { still, asked: true },
         offset: 0,
     };
     Ok(found.into_iter().map(of).collect())
 }
 
-/// Puts the shapes of a file into the document.
-fn read(given: &ArgMatches, document: &mut Document, shapes: &Shapes) -> Result<Imported, Failure> {
+/// Puts the shapes of a file into the document. The inner error is that of a file without any shape.
+fn read(given: &ArgMatches, document: &mut Document, shapes: &Shapes) -> Result<Result<Imported, Failure>, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.path.display()));
     let text =
         pipeline::shapes_text(&shapes.path).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
-    pipeline::import_shifted(document, &text, shapes.format, shapes.offset).map_err(|error| match error {
-        PipelineError::Import(ImportError::Beyond(_)) => {
-            failed(&format!("{error}; --frame-offset says how far the file's frames are ahead of the document's"))
+    match pipeline::import_shifted(document, &text, shapes.format, shapes.offset) {
+        Ok(imported) => Ok(Ok(imported)),
+        Err(PipelineError::Import(error @ ImportError::Nothing(_))) => Ok(Err(failed(&error))),
+        Err(error @ PipelineError::Import(ImportError::Beyond(_))) => {
+            Err(failed(&format!("{error}; --frame-offset says how far the file's frames are ahead of the document's")))
         }
-        PipelineError::Import(error) => failed(&error),
-        other => Failure::of(other, arguments::path(given, "project")),
-    })
+        Err(PipelineError::Import(error)) => Err(failed(&error)),
+        Err(other) => Err(Failure::of(other, arguments::path(given, "project"))),
+    }
 }

@@ -4,7 +4,7 @@ use crate::failure::{Failure, line};
 use crate::unchanged;
 use rototoon::pipeline;
 use rototoon::project::place::{folder_for, folder_of};
-use rototoon::project::{Document, Inputs};
+use rototoon::project::{Document, Inputs, is_same_file};
 use std::path::{Path, PathBuf};
 
 /// Reads a document and prints its warnings.
@@ -60,6 +60,19 @@ pub fn home(document: &Document, path: &Path) -> PathBuf {
 /// written over by a later state of it.
 pub fn inputs(document: &Document, from: &Path) -> Inputs {
     Inputs::default().footage(&document.scene.footage, &home(document, from))
+}
+
+/// Refuses a report that would go over what a command reads or over its output. The document that it reads may be written over by a later state of it, but
+/// not by a report.
+pub fn check_report(report: &Path, inputs: &Inputs, [from, to]: [&Path; 2]) -> Result<(), Failure> {
+    inputs.clone().file(from).check(report)?;
+    if is_same_file(report, to) {
+        return Err(Failure::Use(format!(
+            "--report: found {}, expected another file than the output",
+            report.display()
+        )));
+    }
+    check_writable(report)
 }
 
 /// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files. What another program wrote to the

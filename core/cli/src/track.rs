@@ -43,12 +43,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load(from)?;
     let home = project::home(&document, from);
     let written = given.get_one::<PathBuf>("report");
-    for path in [Some(to), written.map(PathBuf::as_path)].into_iter().flatten() {
-        project::inputs(&document, from).check(path)?;
-        check_writable(path)?;
-    }
-    if written.is_some_and(|path| path == to || path == from) {
-        return Err(Failure::Use("found the same file for the report and a document, expected another one".into()));
+    let inputs = project::inputs(&document, from);
+    inputs.check(to)?;
+    check_writable(to)?;
+    if let Some(report) = written {
+        project::check_report(report, &inputs, [from, to])?;
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let cache = arguments::cached(given).map(Arc::new);

@@ -3,7 +3,9 @@
 //! Two paths may name one file: by `..`, by symbolic or hard links, by letters of another case. Paths are compared after
 //! the system has resolved them, and files by device and inode, on Windows by volume and file index. A path where no file is names none.
 
+use crate::library::{ENDING, INDEX};
 use rototoon_base::scene::{Footage, FramePattern};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// What a command reads.
@@ -29,6 +31,16 @@ impl Inputs {
         self
     }
 
+    /// Adds the clips at a path: a file, or the index and all clips of a library's folder.
+    pub fn clips(mut self, path: &Path) -> Self {
+        let is_clip = |name: &str| name == INDEX || name.ends_with(ENDING);
+        let Ok(entries) = std::fs::read_dir(path) else { return self.file(path) };
+        for entry in entries.flatten().filter(|entry| entry.file_name().to_str().is_some_and(is_clip)) {
+            self = self.file(&entry.path());
+        }
+        self
+    }
+
     /// Adds every frame of a footage that exists; its pattern is relative to `folder`.
     pub fn footage(mut self, footage: &Footage, folder: &Path) -> Self {
         let Ok(pattern) = FramePattern::parse(&footage.pattern) else { return self };
@@ -47,6 +59,21 @@ impl Inputs {
             None => Ok(()),
         }
     }
+}
+
+/// Whether two paths name one file, or would if they were written.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    match (Identity::of(one), Identity::of(other)) {
+        (Some(one), Some(other)) => one.same(&other),
+        (None, None) => place_of(one) == place_of(other),
+        _ => false,
+    }
+}
+
+/// Where a file will be: its folder as the system resolves it, and its name.
+fn place_of(path: &Path) -> Option<(PathBuf, OsString)> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some((crate::path::real(folder).ok()?, path.file_name()?.to_owned()))
 }
 
 /// What tells a file from others.

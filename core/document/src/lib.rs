@@ -84,7 +84,7 @@ mod unknown;
 pub mod validate;
 
 pub use fields::{FieldError, described};
-pub use inputs::{Inputs, OverwritesInput};
+pub use inputs::{Inputs, OverwritesInput, is_same_file};
 pub use load::LoadError;
 pub use output::{WriteError, write_unflushed, write_whole};
 pub use problem::{Problem, Problems, Severity};

@@ -96,7 +96,8 @@ fn read(scene: &Scene, whole: &Scene, detail: Detail) -> Vec<(&'static str, Resu
         Detail::Bezier(tolerance) => SvgOptions { motion, bezier: Some(tolerance), ..SvgOptions::default() },
     };
     let names: Vec<&str> = scene.parts.iter().map(|part| part.name.as_str()).collect();
-    let drawn = |motion| import::svg::svg_of(&svg(scene, &options(motion)), footage, first, &names);
+    let still = import::svg::Still { frame: first, asked: false };
+    let drawn = |motion| import::svg::svg_of(&svg(scene, &options(motion)), footage, still, &names);
     vec![
         ("svg", drawn(Motion::Hold)),
         ("svg", drawn(Motion::Linear)),

@@ -4,6 +4,7 @@ use super::imported::Imported;
 use super::{PipelineError, excerpt};
 use crate::export;
 use crate::file;
+use crate::import::svg::Still;
 use crate::import::{self, ImportError, Shapes};
 use crate::project::Document;
 use crate::scene::{Footage, FrameNumber, Scene};
@@ -18,6 +19,8 @@ pub enum ShapeFormat {
     Svg {
         /// A frame of the footage.
         still: FrameNumber,
+        /// Whether an export of one frame lies on that frame too, though it says another one.
+        asked: bool,
     },
     /// Silhouette shapes.
     Silhouette,
@@ -42,7 +45,7 @@ impl ShapeFormat {
     /// The format of files with this extension.
     pub fn of(extension: &str, still: FrameNumber) -> Option<Self> {
         Some(match extension {
-            "svg" => Self::Svg { still },
+            "svg" => Self::Svg { still, asked: false },
             "fxs" => Self::Silhouette,
             "nk" => Self::Nuke { still },
             "ntp" => Self::Natron { still },
@@ -66,7 +69,7 @@ impl ShapeFormat {
     fn shifted(self, offset: FrameNumber) -> Self {
         let moved = |still: FrameNumber| still.saturating_add(offset);
         match self {
-            Self::Svg { still } => Self::Svg { still: moved(still) },
+            Self::Svg { still, asked } => Self::Svg { still: moved(still), asked },
             Self::Silhouette => Self::Silhouette,
             Self::Nuke { still } => Self::Nuke { still: moved(still) },
             Self::Natron { still } => Self::Natron { still: moved(still) },
@@ -126,7 +129,7 @@ fn own_names(scene: &Scene, extension: &str) -> BTreeMap<String, String> {
 /// The shapes of a file for a document whose parts have these names.
 fn shapes(footage: &Footage, names: &[&str], text: &str, format: ShapeFormat) -> Result<Shapes, ImportError> {
     match format {
-        ShapeFormat::Svg { still } => import::svg::svg_of(text, footage, still, names),
+        ShapeFormat::Svg { still, asked } => import::svg::svg_of(text, footage, Still { frame: still, asked }, names),
         ShapeFormat::Silhouette => import::silhouette::silhouette(text, footage),
         ShapeFormat::Nuke { still } => import::nuke::nuke(text, footage, still),
         ShapeFormat::Natron { still } => import::natron::natron(text, footage, still),
@@ -187,7 +190,7 @@ mod tests {
         let text = export::svg(&own.scene, &export::SvgOptions::default());
         let bare = text.replace("<title>", "<desc>").replace("</title>", "</desc>");
         let mut found = document();
-        let imported = import_shifted(&mut found, &bare, ShapeFormat::Svg { still: 1 }, 0).unwrap();
+        let imported = import_shifted(&mut found, &bare, ShapeFormat::Svg { still: 1, asked: false }, 0).unwrap();
         assert_eq!(found.scene, own.scene);
         let [told] = &imported.warnings[..] else { panic!("{:?}", imported.warnings) };
         let pairs = r#"part-0 is "große Hand", part-1 is "a\"b [1]", part-2 is "arm""#;
@@ -195,8 +198,13 @@ mod tests {
         // Parts of an excerpt have the numbers of the whole document.
         let asked = excerpt::Excerpt { parts: Some(vec!["arm".into()]), ..excerpt::Excerpt::default() };
         let some = export::svg(&excerpt::excerpt(&own, &asked).unwrap().scene, &export::SvgOptions::default());
-        let imported =
-            import_shifted(&mut found, &some.replace("title>", "desc>"), ShapeFormat::Svg { still: 1 }, 0).unwrap();
+        let imported = import_shifted(
+            &mut found,
+            &some.replace("title>", "desc>"),
+            ShapeFormat::Svg { still: 1, asked: false },
+            0,
+        )
+        .unwrap();
         assert!(imported.warnings[0].ends_with(r#": part-2 is "arm""#), "{:?}", imported.warnings);
         assert_eq!(found.scene, own.scene);
     }

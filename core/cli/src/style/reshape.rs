@@ -86,7 +86,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load(from)?;
     let clips = load(arguments::path(given, "clips"), |character, motion| is_asked(given, character, motion))?;
     let clip = chosen(&clips, arguments::path(given, "clips"), given)?;
-    let inputs = project::inputs(&document, from).file(arguments::path(given, "clips"));
+    let inputs = project::inputs(&document, from).clips(arguments::path(given, "clips"));
     let inputs = given.get_one::<PathBuf>("over").into_iter().fold(inputs, |inputs, path| inputs.file(path));
     inputs.check(to)?;
     check_writable(to)?;

@@ -98,7 +98,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let read = given
         .get_one::<PathBuf>("key_pose")
         .into_iter()
-        .fold(Inputs::default().file(from), |read, path| read.file(path));
+        .fold(Inputs::default().clips(from), |read, path| read.file(path));
     read.check(to)?;
     check_writable(to)?;
     let preset = text("style_preset");

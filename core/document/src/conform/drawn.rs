@@ -1,16 +1,21 @@
-//! Strokes, pegs, clicks and limbs moved to new footage: the lists beside the parts, as JSON values, so that fields of other tools stay.
+//! Strokes, pegs and clicks moved to new footage: the lists beside the parts, as JSON values, so that fields of other tools stay.
 
-use super::{Document, FieldError, Note};
+use super::{Document, FieldError, Note, limbs};
 use crate::drawings::lines;
 use crate::recolours::hand_on;
 use crate::save::rounded;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::FrameNumber;
 use rototoon_base::scene::conform::Conform;
-use serde_json::{Map, Value, json};
+use rototoon_base::scene::{FrameNumber, Part};
+use serde_json::{Value, json};
 
-/// Moves all lists of a document.
-pub(super) fn moved(document: &mut Document, conform: &Conform, notes: &mut Vec<Note>) -> Result<(), FieldError> {
+/// Moves all lists of a document. `parts` are those that it had for the old footage.
+pub(super) fn moved(
+    document: &mut Document,
+    parts: &[Part],
+    conform: &Conform,
+    notes: &mut Vec<Note>,
+) -> Result<(), FieldError> {
     drawings(document, conform, notes)?;
     between(document, conform, notes)?;
     for (name, kind, command) in [("traced", "strokes", "trace"), ("filled", "regions", "fill")] {
@@ -36,11 +41,11 @@ pub(super) fn moved(document: &mut Document, conform: &Conform, notes: &mut Vec<
     set(document, "fills", !clicks.is_empty(), moved);
     recolours(document, conform, notes)?;
     pegs(document, conform, notes)?;
-    limbs(document, conform)
+    limbs::moved(document, parts, conform, notes)
 }
 
 /// Writes a list; one that was not there stays away.
-fn set(document: &mut Document, name: &'static str, there: bool, list: Vec<Value>) {
+pub(super) fn set(document: &mut Document, name: &'static str, there: bool, list: Vec<Value>) {
     match (there, list.is_empty()) {
         (false, _) => {}
         (true, true) => document.remove_other_field(name),
@@ -188,56 +193,15 @@ fn recolours(document: &mut Document, conform: &Conform, notes: &mut Vec<Note>) 
     Ok(())
 }
 
-/// Limbs: points that were drawn on frames. Swaps and marks of depth: ranges of frames.
-fn limbs(document: &mut Document, conform: &Conform) -> Result<(), FieldError> {
-    let mut limbs = document.other_list("limbs")?;
-    for limb in &mut limbs {
-        if let Some(bends) = limb.get_mut("bends") {
-            by_frame(bends, conform);
-        }
-        for end in ["start", "end"] {
-            let Some(Value::Array(points)) = limb.get_mut(end).and_then(|end| end.get_mut("points")) else { continue };
-            points.iter_mut().filter_map(|point| point.get_mut("drawn")).for_each(|drawn| by_frame(drawn, conform));
-        }
-    }
-    let there = !limbs.is_empty();
-    set(document, "limbs", there, limbs);
-    let swaps = document.other_list("limb_swaps")?;
-    let swapped = swaps.iter().filter_map(|swap| {
-        let [first, last] = [0, 1].map(|k| swap.get(k).and_then(number));
-        conform.frames.range(first?, last?).map(|range| json!(range))
-    });
-    let swapped = swapped.collect();
-    set(document, "limb_swaps", !swaps.is_empty(), swapped);
-    let marks = document.other_list("depth_marks")?;
-    let marked = marks.iter().filter_map(|mark| ranged(mark, conform)).collect();
-    set(document, "depth_marks", !marks.is_empty(), marked);
-    Ok(())
-}
-
-/// An entry with `first` and `last` on its frames; an end without limit stays without.
-fn ranged(mark: &Value, conform: &Conform) -> Option<Value> {
-    let ends = ["first", "last"].map(|name| frame(mark, name));
-    if ends == [None, None] {
-        return Some(mark.clone());
-    }
-    let range = conform.frames.range(ends[0].unwrap_or(FrameNumber::MIN), ends[1].unwrap_or(FrameNumber::MAX))?;
-    let mut mark = mark.clone();
-    for (k, name) in ["first", "last"].into_iter().enumerate().filter(|(k, _)| ends[*k].is_some()) {
-        mark = with_frame(&mark, name, range[k]);
-    }
-    Some(mark)
-}
-
-fn number(value: &Value) -> Option<FrameNumber> {
+pub(super) fn number(value: &Value) -> Option<FrameNumber> {
     value.as_i64().and_then(|number| FrameNumber::try_from(number).ok())
 }
 
-fn frame(entry: &Value, name: &str) -> Option<FrameNumber> {
+pub(super) fn frame(entry: &Value, name: &str) -> Option<FrameNumber> {
     entry.get(name).and_then(number)
 }
 
-fn with_frame(entry: &Value, name: &str, frame: FrameNumber) -> Value {
+pub(super) fn with_frame(entry: &Value, name: &str, frame: FrameNumber) -> Value {
     let mut value = entry.clone();
     if let Some(own) = value.get_mut(name) {
         *own = json!(frame);
@@ -283,7 +247,7 @@ fn point(value: &mut Value, name: &str, conform: &Conform) {
 }
 
 /// Places a point `[x, y]`. What is no point stays; reading the document names it.
-fn place(value: &mut Value, conform: &Conform) {
+pub(super) fn place(value: &mut Value, conform: &Conform) {
     let [x, y] = [0, 1].map(|k| value.get(k).and_then(Value::as_f64));
     if let (Some(x), Some(y), false) = (x, y, conform.placement.is_same()) {
         let placed = conform.placement.place(Point::new(x, y));
@@ -301,20 +265,4 @@ fn lengths(list: &mut Value, conform: &Conform) {
             }
         });
     }
-}
-
-/// Moves an object of points by frame.
-fn by_frame(object: &mut Value, conform: &Conform) {
-    let Value::Object(old) = object else { return };
-    let mut moved = Map::new();
-    for own in [true, false] {
-        for (name, value) in old.iter() {
-            let Ok(on) = name.parse::<FrameNumber>() else { continue };
-            let Some(new) = conform.frames.made(on).filter(|_| conform.frames.has_own(on) == own) else { continue };
-            let mut value = value.clone();
-            place(&mut value, conform);
-            moved.entry(new.to_string()).or_insert(value);
-        }
-    }
-    *old = moved;
 }

@@ -11,6 +11,7 @@
 //! - `drawn`: strokes, pegs, clicks and limbs, in the lists beside the parts
 
 mod drawn;
+mod limbs;
 mod part;
 
 use super::{Document, FieldError};
@@ -86,7 +87,7 @@ impl Document {
         moved.forget_seen();
         moved.forget_reshaped();
         moved.scene.parts = self.scene.parts.iter().map(|part| part::moved(part, conform, &mut notes)).collect();
-        drawn::moved(&mut moved, conform, &mut notes)?;
+        drawn::moved(&mut moved, &self.scene.parts, conform, &mut notes)?;
         Ok((moved, notes))
     }
 }

@@ -159,3 +159,37 @@ fn the_same_footage_gives_the_same_document() {
         old.conformed(&Conform { placement: Placement::SAME, frames }, old.scene.footage.clone()).unwrap();
     assert_eq!((json(&new), notes), (json(&old), Vec::new()));
 }
+
+#[test]
+fn what_is_marked_of_limbs_is_named_where_its_drawing_is_gone() {
+    let mut old = document();
+    old.scene.parts[0].keys = [1, 5].map(|frame| (frame, vec![Point::new(0.0, 0.0), Point::new(20.0, 0.0)])).into();
+    old.scene.parts[0].tracks =
+        (1..=5).map(|frame| (frame, vec![Point::new(0.0, 0.0), Point::new(20.0, 0.0)])).collect();
+    let limbs = r#"[{"from": "r_shoulder", "to": "r_elbow",
+        "start": {"points": [{"part": "arm", "at": 0}, {"part": "arm", "drawn": {"2": [5, 3]}}]},
+        "end": {"points": [{"part": "arm", "drawn": {"1": [5, 3], "2": [9, 9]}}, {"part": "arm", "at": 1}]}, "bends": {"2": [5, 5]}}]"#;
+    old.set_other_field("limbs", serde_json::from_str(limbs).unwrap());
+    old.set_other_field("limb_swaps", serde_json::from_str("[[2, 2], [1, 3]]").unwrap());
+    let marks = r#"[{"front": "arm", "behind": "arm", "first": 2, "last": 2}]"#;
+    old.set_other_field("depth_marks", serde_json::from_str(marks).unwrap());
+    let sources = [(1001, Same(1)), (1002, Same(3)), (1003, Same(4)), (1004, Same(5))];
+    let frames = FrameMap::new(1..=6, sources.into_iter().collect(), vec![[3, 4]]);
+    let footage = Footage {
+        pattern: "new/%d.png".into(),
+        first: 1001,
+        last: 1004,
+        fps: 24.0,
+        width: 100,
+        height: 50,
+        held: false,
+    };
+    let placement = Placement { scale: 1.0, shift: Point::ZERO };
+    let (new, notes) = old.conformed(&Conform { placement, frames }, footage).unwrap();
+    let gone: Vec<_> = notes.iter().map(ToString::to_string).filter(|told| told.contains("on 2 of the old")).collect();
+    assert_eq!(gone.len(), 5, "{notes:?}");
+    let json = json(&new);
+    assert_eq!(json["limbs"][0]["start"]["points"][1], serde_json::json!({"part": "arm", "at": 0.25}));
+    assert_eq!(json["limbs"][0]["end"]["points"][0]["drawn"], serde_json::json!({"1001": [5.0, 3.0]}));
+    assert_eq!((&json["limb_swaps"], json.get("depth_marks")), (&serde_json::json!([[1001, 1002]]), None));
+}

@@ -54,7 +54,16 @@ const KEYS: &str = "data-keys";
 ///
 /// An [`ImportError`] names the element and its place.
 pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, ImportError> {
-    svg_of(text, footage, still, &[])
+    svg_of(text, footage, Still { frame: still, asked: false }, &[])
+}
+
+/// The frame of shapes without animation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Still {
+    /// A frame of the footage.
+    pub frame: FrameNumber,
+    /// Whether somebody asked for it: then an export of one frame lies there too, though it says another frame. An export of several frames is refused.
+    pub asked: bool,
 }
 
 /// The same for shapes that may be parts of a document with these names, in its order. A path of an export that has lost its name finds its part by
@@ -63,7 +72,7 @@ pub fn svg(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes, 
 /// # Errors
 ///
 /// As for [`svg`].
-pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str]) -> Result<Shapes, ImportError> {
+pub fn svg_of(text: &str, footage: &Footage, still: Still, parts: &[&str]) -> Result<Shapes, ImportError> {
     let document = parsed(text)?;
     let root = document.root_element();
     if root.tag_name().name() != "svg" {
@@ -71,8 +80,8 @@ pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str])
     }
     let (view, over) = viewed(root, footage)?;
     let (styles, clips) = (Styles::of(&document), clips(&document));
-    let film = film(root, footage);
-    let still = film.as_ref().map_or(still, |film| still.clamp(film.first, film.last));
+    let film = film(root, footage, still)?;
+    let still = film.as_ref().map_or(still.frame, |film| still.frame.clamp(film.first, film.last));
     let read = |strokes| {
         let mut reader = Reader::new([footage, film.as_ref().unwrap_or(footage)], still, &styles, &clips);
         (reader.strokes, reader.called) = (strokes, Called::new(&document, parts));
@@ -95,6 +104,7 @@ pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str])
             _ => "one beside the painted regions that Rototoon has written, which are no parts",
         }));
     }
+    reader.names.settle(&mut reader.shapes);
     reader.lost.tell(&mut reader.left_out);
     reader.called.tell(&mut reader.left_out);
     let mut warnings = reader.left_out.lines(text);
@@ -103,11 +113,21 @@ pub fn svg_of(text: &str, footage: &Footage, still: FrameNumber, parts: &[&str])
 }
 
 /// The footage of the frames of which an export is a film, if the document has some of them. Others begin with the first frame of the footage.
-fn film(root: Node, footage: &Footage) -> Option<Footage> {
+fn film(root: Node, footage: &Footage, still: Still) -> Result<Option<Footage>, ImportError> {
     let frame = |name| root.attribute(name)?.trim().parse::<FrameNumber>().ok();
-    let (first, last) = (frame(FIRST)?, frame(LAST)?);
-    let meets = first <= last && first <= footage.last && footage.first <= last;
-    meets.then(|| Footage { first, last, ..footage.clone() })
+    let Some((first, last)) = frame(FIRST).zip(frame(LAST)).filter(|(first, last)| first <= last) else {
+        return Ok(None);
+    };
+    let of = |first, last| Some(Footage { first, last, ..footage.clone() });
+    if !still.asked {
+        let meets = first <= footage.last && footage.first <= last;
+        return Ok(of(first, last).filter(|_| meets));
+    }
+    if first < last {
+        let message = format!("found the frames {first} to {last}, expected one frame for frame {}", still.frame);
+        return Err(ImportError::at(root, message));
+    }
+    Ok(of(still.frame, still.frame))
 }
 
 /// How many elements of an export are left out.

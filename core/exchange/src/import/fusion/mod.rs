@@ -79,6 +79,7 @@ pub fn fusion(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shape
     if reader.found.shapes.is_empty() && reader.found.warnings.is_empty() {
         return Err(ImportError::Nothing("a PolylineMask"));
     }
+    reader.names.settle(&mut reader.found.shapes);
     // The nearest shape comes first in the file.
     reader.found.shapes.reverse();
     Ok(reader.found)

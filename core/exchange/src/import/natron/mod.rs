@@ -63,6 +63,7 @@ pub fn natron(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shape
         }
     }
     reader.reach.check().map_err(|error| ImportError::Beyond(Box::new(error)))?;
+    reader.names.settle(&mut reader.shapes);
     let mut warnings = reader.left_out.lines(text);
     if !reader.shapes.is_empty() {
         warnings.extend(told);

@@ -75,6 +75,7 @@ pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes,
     if reader.found.shapes.is_empty() && reader.found.warnings.is_empty() {
         return Err(ImportError::Nothing("a curvegroup of a Roto or RotoPaint node"));
     }
+    reader.names.settle(&mut reader.found.shapes);
     // The nearest shape comes first in the file.
     reader.found.shapes.reverse();
     Ok(reader.found)

@@ -64,6 +64,7 @@ pub fn silhouette(text: &str, footage: &Footage) -> Result<Shapes, ImportError> 
         }
         return Err(ImportError::Nothing("an <Object type=\"Shape\"> that is not hidden"));
     }
+    reader.names.settle(&mut reader.shapes);
     reader.shapes.reverse();
     Ok(Shapes { shapes: reader.shapes, warnings: reader.left_out.lines(text) })
 }
