@@ -56,6 +56,11 @@ impl Grid {
         })
     }
 
+    /// The number of places that a picture of this size takes at a scale.
+    pub fn places_of(&self, size: [usize; 2], scale: f64) -> f64 {
+        size.iter().map(|&side| side as f64 * scale / self.step).product()
+    }
+
     /// The luma of the complete old picture at a scale, with its corner in that of the result.
     pub fn of_old_alone(&self, picture: &Raster<Colour>, scale: f64) -> Raster<f32> {
         let len = |side: usize| ((side as f64 * scale / self.step).round() as usize).max(1);

@@ -129,7 +129,7 @@ pub fn compare(old: Plate, new: Plate, given: &Given, progress: &dyn Progress) -
         return Err(ConformError::TooLong { old: old.len(), new: new.len() });
     }
     progress.report("Placing", 0.0)?;
-    let coarse = placed(old, new, given)?;
+    let coarse = placed(old, new, given, &Span { progress, from: 0.0, to: 0.1 })?;
     let (first, differences) = shown(old, new, &coarse, &Span { progress, from: 0.1, to: 0.5 })?;
     progress.report("Placing", 0.5)?;
     let placement = refined(old, new, given, coarse, &differences)?;
@@ -151,7 +151,7 @@ struct Span<'a> {
 }
 
 /// The placement to a place of a coarse grid.
-fn placed(old: Plate, new: Plate, given: &Given) -> Result<Placement, ConformError> {
+fn placed(old: Plate, new: Plate, given: &Given, progress: &dyn Progress) -> Result<Placement, ConformError> {
     let scales = place::scales(old.size(), new.size(), given.scale);
     if let (Some(scale), Some(shift)) = (given.scale, given.shift) {
         return Ok(Placement { scale, shift });
@@ -171,7 +171,7 @@ fn placed(old: Plate, new: Plate, given: &Given) -> Result<Placement, ConformErr
     searched.dedup();
     let targets = new.pictures(&searched, "new")?;
     let [olds, news] = [&pictures, &targets].map(|all| all.iter().map(Arc::as_ref).collect::<Vec<_>>());
-    let found = place::found(&olds, &news, &scales, given.shift);
+    let found = place::found(&olds, &news, &scales, given.shift, progress)?;
     let found = found.filter(|found| found.score >= LEAST_SCORE).ok_or(ConformError::NothingInCommon)?;
     Ok(found.placement)
 }

@@ -15,7 +15,7 @@ use crate::grid::{Grid, directions};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::conform::Placement;
-use rototoon_base::scene::{Colour, Raster};
+use rototoon_base::scene::{Cancelled, Colour, Progress, Raster};
 use rototoon_image::correlation::{Correlator, Spectrum};
 use rototoon_image::gaussian::{Border, blur};
 
@@ -31,6 +31,10 @@ const ENOUGH: f32 = 0.75;
 const FIRST: usize = 3;
 /// Least share of the smaller picture that both pictures must show.
 const OVERLAP: f64 = 0.25;
+
+/// How many times as large as the new picture the old one may be at a scale. A plate that shows less of the old picture is none that people make, and the search
+/// would take memory and minutes.
+const MOST_TIMES: f64 = 40.0;
 
 /// A placement and how well the pictures agree there.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,8 +68,18 @@ pub fn scales(old: [usize; 2], new: [usize; 2], given: Option<f64>) -> Vec<f64> 
 }
 
 /// The best placement of old pictures in new ones. `shift` is given or searched.
-pub fn found(old: &[&Raster<Colour>], new: &[&Raster<Colour>], scales: &[f64], shift: Option<Point>) -> Option<Found> {
-    let (first, target) = (old.first()?, new.first()?);
+///
+/// # Errors
+///
+/// [`Cancelled`].
+pub fn found(
+    old: &[&Raster<Colour>],
+    new: &[&Raster<Colour>],
+    scales: &[f64],
+    shift: Option<Point>,
+    progress: &dyn Progress,
+) -> Result<Option<Found>, Cancelled> {
+    let (Some(first), Some(target)) = (old.first(), new.first()) else { return Ok(None) };
     let size = [first.width(), first.height()];
     let grid = Grid::of(target.width(), target.height(), PLACES);
     let soft = |luma: &Raster<f32>| blur(&directions(luma), SOFTNESS, Border::Replicate);
@@ -74,6 +88,10 @@ pub fn found(old: &[&Raster<Colour>], new: &[&Raster<Colour>], scales: &[f64], s
     for (tried, &scale) in scales.iter().enumerate() {
         if tried >= FIRST && best.is_some_and(|best| best.agreement >= ENOUGH) {
             break;
+        }
+        progress.report("Placing", tried as f64 / scales.len() as f64)?;
+        if grid.places_of(size, scale) > MOST_TIMES * grid.places_of([target.width(), target.height()], 1.0) {
+            continue;
         }
         let plain = plain(scale, size, [target.width(), target.height()], shift);
         let placed = old.iter().map(|picture| soft(&grid.of_old_alone(picture, scale))).collect::<Vec<_>>();
@@ -98,7 +116,7 @@ pub fn found(old: &[&Raster<Colour>], new: &[&Raster<Colour>], scales: &[f64], s
             }
         }
     }
-    best
+    Ok(best)
 }
 
 /// The placements that are tried in any case.
@@ -192,6 +210,7 @@ fn agreement(old: &Raster<[f32; 2]>, new: &Raster<[f32; 2]>, grid: &Grid, placem
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon_base::scene::Silent;
 
     /// Some lines of a drawing, which is not like itself elsewhere, seen through a placement.
     fn drawing(size: [usize; 2], placement: &Placement) -> Raster<Colour> {
@@ -210,7 +229,7 @@ mod tests {
         let old = drawing([96, 72], &Placement::SAME);
         let new = drawing(size, &truth);
         let scales = scales([96, 72], size, None);
-        found(&[&old], &[&new], &scales, None).unwrap().placement
+        found(&[&old], &[&new], &scales, None, &Silent).unwrap().unwrap().placement
     }
 
     #[test]
@@ -247,6 +266,13 @@ mod tests {
     }
 
     #[test]
+    fn pictures_that_would_be_far_too_large_are_not_drawn() {
+        let (old, new) = (drawing([96, 72], &Placement::SAME), drawing([48, 36], &Placement::SAME));
+        assert_eq!(found(&[&old], &[&new], &[100.0], None, &Silent), Ok(None));
+        assert!(found(&[&old], &[&new], &[3.0], None, &Silent).unwrap().is_some());
+    }
+
+    #[test]
     fn each_likely_scale_is_tried_once() {
         let first = |old, new| scales(old, new, None)[..3].to_vec();
         assert_eq!(first([96, 72], [96, 72]), [1.0, 2.0, 0.5]);
@@ -258,6 +284,6 @@ mod tests {
     #[test]
     fn blank_pictures_are_nowhere() {
         let blank = Raster::new(96, 72, [0.9; 3]);
-        assert_eq!(found(&[&blank], &[&blank], &[1.0], None), None);
+        assert_eq!(found(&[&blank], &[&blank], &[1.0], None, &Silent), Ok(None));
     }
 }

@@ -7,7 +7,7 @@
 //! A picture shows lines alone if its opaque pixels lie in short runs, along rows and columns: half of the runs are at most 1/50 of
 //! its height long. Lines stand out if nine tenths of their pixels differ from the paper by a quarter or more, in luma (Rec. 709, encoded).
 //!
-//! All frames of a footage are blended with the same grey, that of its first frame with a picture: paper that changed would look like motion.
+//! All frames of a footage are blended with the same grey, that of its first frame that shows anything: paper that changed would look like motion.
 
 use super::stored::Stored;
 use rototoon_image::colour::encode;
@@ -26,17 +26,17 @@ const PALER: f64 = 0.1;
 /// Opaque pixels have this alpha or more.
 const OPAQUE: f32 = 0.5;
 
-/// The grey, sRGB-encoded, for a picture of this width.
-pub(crate) fn of(picture: &Stored, width: usize) -> f32 {
+/// The grey, sRGB-encoded, for a picture of this width; `None` for one that shows next to nothing, such as an empty cel.
+pub(crate) fn of(picture: &Stored, width: usize) -> Option<f32> {
     if !picture.has_alpha() || width == 0 {
-        return GREY;
+        return Some(GREY);
     }
     let pixels = picture.layer();
     let opaque: Vec<bool> = pixels.iter().map(|p| p[3] >= OPAQUE).collect();
     let height = opaque.len() / width;
-    let Some(run) = middle(runs(&opaque, width)) else { return GREY };
+    let run = middle(runs(&opaque, width))?;
     if run > (THIN * height as f32).max(2.0) {
-        return GREY;
+        return Some(GREY);
     }
     let lumas: Vec<f32> = pixels.iter().zip(&opaque).filter(|(_, opaque)| **opaque).map(|(p, _)| luma(p)).collect();
     let pale = |paper: f32| {
@@ -45,11 +45,11 @@ pub(crate) fn of(picture: &Stored, width: usize) -> f32 {
         *apart.select_nth_unstable_by(at, f32::total_cmp).1
     };
     let [white, black] = PAPERS.map(pale);
-    match white.max(black) {
+    Some(match white.max(black) {
         best if best < CONTRAST => GREY,
         best if white >= ON_WHITE.min(best) => PAPERS[0],
         _ => PAPERS[1],
-    }
+    })
 }
 
 /// The luma of light that is multiplied by alpha.
@@ -96,7 +96,7 @@ mod tests {
     }
 
     fn chosen(colour: impl Fn(u32, u32) -> Option<[u8; 3]>) -> f32 {
-        of(&picture(colour), SIZE as usize)
+        of(&picture(colour), SIZE as usize).unwrap()
     }
 
     /// The outline of a box, three pixels wide.
@@ -120,8 +120,8 @@ mod tests {
     fn lines_of_black_and_white_and_what_is_painted_stay_on_grey() {
         assert_eq!(chosen(|x, y| is_line(x, y).then_some(if x < 100 { [0; 3] } else { [255; 3] })), GREY);
         assert_eq!(chosen(|x, y| (x.abs_diff(100) < 40 && y.abs_diff(100) < 40).then_some([40; 3])), GREY);
-        assert_eq!(chosen(|_, _| None), GREY);
+        assert_eq!(of(&picture(|_, _| None), SIZE as usize), None);
         let opaque = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(SIZE, SIZE, image::Rgb([0; 3])));
-        assert_eq!(of(&Stored::new(opaque, false), SIZE as usize), GREY);
+        assert_eq!(of(&Stored::new(opaque, false), SIZE as usize), Some(GREY));
     }
 }

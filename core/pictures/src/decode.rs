@@ -44,7 +44,7 @@ pub fn probe(path: &Path) -> Result<(usize, usize), DecodeError> {
 /// A file that does not exist or cannot be read as a picture; a picture of another size, which is not decoded.
 pub fn decode(path: &Path, expected: Option<(usize, usize)>) -> Result<Raster<Colour>, DecodeError> {
     let (stored, size) = stored(path, expected, size_of::<Colour>())?;
-    let backdrop = backdrop::of(&stored, size.0);
+    let backdrop = backdrop::of(&stored, size.0).unwrap_or(backdrop::GREY);
     raster(size, stored.colours(backdrop))
 }
 

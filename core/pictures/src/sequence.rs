@@ -182,7 +182,7 @@ impl Sequence {
         read().map_err(|error| self.named(frame, path.clone(), error))
     }
 
-    /// The grey behind transparent pixels of all frames: that of the first frame that can be read. `at` is a frame that can be.
+    /// The grey behind transparent pixels of all frames: that of the first frame that can be read and shows anything. `at` is a frame that can be read.
     fn backdrop(&self, at: FrameNumber, picture: &Stored) -> f32 {
         if !picture.has_alpha() {
             return backdrop::GREY;
@@ -191,9 +191,10 @@ impl Sequence {
             return known;
         }
         let of = |picture: &Stored| backdrop::of(picture, self.footage.width);
-        let earlier = (self.footage.first..at).find_map(|frame| self.stored(frame, size_of::<Colour>()).ok());
-        let found = earlier.map_or_else(|| of(picture), |(first, _)| of(&first));
-        *self.locked().backdrop.get_or_insert(found)
+        let other = |frame| of(&self.stored(frame, size_of::<Colour>()).ok()?.0);
+        let before = (self.footage.first..at).find_map(other);
+        let found = before.or_else(|| of(picture)).or_else(|| (at + 1..=self.footage.last).find_map(other));
+        *self.locked().backdrop.get_or_insert(found.unwrap_or(backdrop::GREY))
     }
 
     /// Whether a frame without a file could be held, if the footage said so.

@@ -9,6 +9,7 @@ use crate::geometry::Point;
 use crate::pictures::{Sequence, probe};
 use crate::project::Document;
 use crate::project::conform::Note;
+use crate::project::schema::MAX_FRAMES;
 use crate::scene::conform::{Conform, FrameMap, Placement, Source};
 use crate::scene::{Footage, FrameNumber, FramePattern, Progress};
 use serde_json::{Map, Value, json};
@@ -91,6 +92,14 @@ fn footage(new: &NewFootage, old: &Footage) -> Result<Footage, PipelineError> {
     let (width, height) = probe(&path).map_err(unreadable)?;
     let all = first..=existing.last().copied().unwrap_or(first);
     let range = new.frames.clone().unwrap_or(all);
+    let count = i64::from(*range.end()) - i64::from(*range.start()) + 1;
+    if count > MAX_FRAMES {
+        let extent = format!("found frames {} to {}", range.start(), range.end());
+        return Err(PipelineError::Request(format!(
+            "{}: {extent}, expected at most {MAX_FRAMES} of them",
+            new.pattern
+        )));
+    }
     let (first, last, fps) = (*range.start(), *range.end(), new.fps.unwrap_or(old.fps));
     Ok(Footage { pattern: new.pattern.clone(), first, last, fps, width, height, held: new.held.unwrap_or(old.held) })
 }

@@ -193,6 +193,20 @@ fn recolours(document: &mut Document, conform: &Conform, notes: &mut Vec<Note>) 
     Ok(())
 }
 
+/// An entry with `first` and `last` on its frames; an end without limit stays without.
+pub(super) fn ranged(mark: &Value, conform: &Conform) -> Option<Value> {
+    let ends = ["first", "last"].map(|name| frame(mark, name));
+    if ends == [None, None] {
+        return Some(mark.clone());
+    }
+    let range = conform.frames.range(ends[0].unwrap_or(FrameNumber::MIN), ends[1].unwrap_or(FrameNumber::MAX))?;
+    let mut mark = mark.clone();
+    for (k, name) in ["first", "last"].into_iter().enumerate().filter(|(k, _)| ends[*k].is_some()) {
+        mark = with_frame(&mark, name, range[k]);
+    }
+    Some(mark)
+}
+
 pub(super) fn number(value: &Value) -> Option<FrameNumber> {
     value.as_i64().and_then(|number| FrameNumber::try_from(number).ok())
 }
@@ -201,7 +215,7 @@ pub(super) fn frame(entry: &Value, name: &str) -> Option<FrameNumber> {
     entry.get(name).and_then(number)
 }
 
-pub(super) fn with_frame(entry: &Value, name: &str, frame: FrameNumber) -> Value {
+fn with_frame(entry: &Value, name: &str, frame: FrameNumber) -> Value {
     let mut value = entry.clone();
     if let Some(own) = value.get_mut(name) {
         *own = json!(frame);

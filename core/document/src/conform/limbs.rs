@@ -3,7 +3,7 @@
 //! Each goes with its drawing, and what has none any more is named. A calibration point whose last drawn place goes keeps its place along the contour: it
 //! becomes one that is bound there.
 
-use super::drawn::{frame, number, place, set, with_frame};
+use super::drawn::{frame, number, place, ranged, set};
 use super::{Document, FieldError, Note};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::conform::Conform;
@@ -94,20 +94,6 @@ fn along(part: &Part, frame: FrameNumber, drawn: &Value) -> Option<f64> {
     let nearest = places.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)?;
     // Once round is the first point again.
     Some(if part.closed && nearest >= part.point_count() as f64 { 0.0 } else { nearest })
-}
-
-/// An entry with `first` and `last` on its frames; an end without limit stays without.
-fn ranged(mark: &Value, conform: &Conform) -> Option<Value> {
-    let ends = ["first", "last"].map(|name| frame(mark, name));
-    if ends == [None, None] {
-        return Some(mark.clone());
-    }
-    let range = conform.frames.range(ends[0].unwrap_or(FrameNumber::MIN), ends[1].unwrap_or(FrameNumber::MAX))?;
-    let mut mark = mark.clone();
-    for (k, name) in ["first", "last"].into_iter().enumerate().filter(|(k, _)| ends[*k].is_some()) {
-        mark = with_frame(&mark, name, range[k]);
-    }
-    Some(mark)
 }
 
 /// Moves an object of points by frame. Returns the frames whose drawings are gone.

@@ -36,6 +36,15 @@ pub enum Note {
         /// Its frame in the old footage.
         frame: FrameNumber,
     },
+    /// Its drawing and another one are one drawing now, and the other one's stays.
+    Met {
+        /// What.
+        what: String,
+        /// Its frame in the old footage.
+        frame: FrameNumber,
+        /// The frame in the new footage where they meet.
+        by: FrameNumber,
+    },
     /// The drawing of a key is gone, and the nearest tracked contour is the key now.
     Replaced {
         /// The part.
@@ -62,6 +71,9 @@ impl fmt::Display for Note {
             }
             Self::Gone { what, frame } => {
                 write!(f, "{what} on {frame} of the old footage: left out, its drawing is gone")
+            }
+            Self::Met { what, frame, by } => {
+                write!(f, "{what} on {frame} of the old footage: left out, that of another frame stays on {by}")
             }
             Self::Replaced { part, frame, by } => write!(
                 f,

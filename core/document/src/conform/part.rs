@@ -5,16 +5,20 @@ use crate::schema::MAX_FEATHER;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::conform::{Conform, FrameMap, Source};
 use rototoon_base::scene::{FrameNumber, Part};
-use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The part in the new footage.
 pub(super) fn moved(part: &Part, conform: &Conform, notes: &mut Vec<Note>) -> Part {
     let place = |points: &Vec<Point>| points.iter().map(|p| conform.placement.place(*p)).collect::<Vec<_>>();
     let frames = &conform.frames;
+    let mut met = |what: &str, frame: FrameNumber, by: FrameNumber| {
+        notes.push(Note::Met { what: format!("part {:?}: the {what}", part.name), frame, by });
+    };
     let mut result = Part {
-        keys: made(&part.keys, frames, place),
-        pins: made(&part.pins, frames, |pins| pins.iter().map(|(k, p)| (*k, conform.placement.place(*p))).collect()),
-        centers: made(&part.centers, frames, |p| conform.placement.place(*p)),
+        keys: made(&part.keys, frames, place, |frame, by| met("key", frame, by)),
+        pins: pins(part, conform, |frame, by| met("pin", frame, by)),
+        centers: made(&part.centers, frames, |p| conform.placement.place(*p), |frame, by| met("centre", frame, by)),
         tracks: shown(&part.tracks, frames, place),
         confidence: shown(&part.confidence, frames, Vec::clone),
         curves: shown(&part.curves, frames, |paths| paths.iter().map(place).collect()),
@@ -32,14 +36,41 @@ pub(super) fn moved(part: &Part, conform: &Conform, notes: &mut Vec<Note>) -> Pa
     result
 }
 
-/// What was made on frames goes to one frame each. Of two that meet on one frame, the one whose own frame it is stays.
-fn made<T, U>(map: &BTreeMap<FrameNumber, T>, frames: &FrameMap, place: impl Fn(&T) -> U) -> BTreeMap<FrameNumber, U> {
+/// What was made on frames goes to one frame each. Of two that meet on one frame, the one whose own frame it is stays, and `met` gets the old frame of the other one
+/// with the new frame.
+fn made<T, U: PartialEq>(
+    map: &BTreeMap<FrameNumber, T>,
+    frames: &FrameMap,
+    place: impl Fn(&T) -> U,
+    mut met: impl FnMut(FrameNumber, FrameNumber),
+) -> BTreeMap<FrameNumber, U> {
     let mut result = BTreeMap::new();
     for own in [true, false] {
-        for (frame, value) in map.iter().filter(|(frame, _)| frames.has_own(**frame) == own) {
-            if let Some(new) = frames.made(*frame) {
-                result.entry(new).or_insert_with(|| place(value));
+        for (&frame, value) in map.iter().filter(|(frame, _)| frames.has_own(**frame) == own) {
+            let Some(new) = frames.made(frame) else { continue };
+            let value = place(value);
+            match result.entry(new) {
+                Entry::Vacant(free) => drop(free.insert(value)),
+                Entry::Occupied(other) if *other.get() != value => met(frame, new),
+                Entry::Occupied(_) => {}
             }
+        }
+    }
+    result
+}
+
+/// The pins of a part. Those of several points that meet on one frame all stay.
+fn pins(
+    part: &Part,
+    conform: &Conform,
+    mut met: impl FnMut(FrameNumber, FrameNumber),
+) -> BTreeMap<FrameNumber, BTreeMap<usize, Point>> {
+    let points: BTreeSet<usize> = part.pins.values().flat_map(BTreeMap::keys).copied().collect();
+    let mut result: BTreeMap<FrameNumber, BTreeMap<usize, Point>> = BTreeMap::new();
+    for point in points {
+        let own = part.pins.iter().filter_map(|(frame, pins)| Some((*frame, *pins.get(&point)?))).collect();
+        for (frame, p) in made(&own, &conform.frames, |p| conform.placement.place(*p), &mut met) {
+            result.entry(frame).or_default().insert(point, p);
         }
     }
     result

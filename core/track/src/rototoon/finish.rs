@@ -210,7 +210,9 @@ pub(super) fn finish(
     let width = stage.width();
     stage.covers = plan.occluders.iter().map(|contours| Cover::new(contours, width)).collect();
     let stage = &stage;
-    let tools = before.and_then(|before| before.tools(pooled, &plan)).cloned().unwrap_or_default();
+    // What was settled with other tools is another result.
+    let kept = before.and_then(|before| Some((before, before.tools(pooled, &plan)?.clone())));
+    let (before, tools) = kept.map_or_else(Default::default, |(before, tools)| (Some(before), tools));
     let settled: Vec<Settled> = (0..stage.drawings.len())
         .into_par_iter()
         .with_max_len(1)
