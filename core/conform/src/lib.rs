@@ -150,6 +150,12 @@ struct Span<'a> {
     to: f64,
 }
 
+impl Progress for Span<'_> {
+    fn report(&self, step: &str, done: f64) -> Result<(), Cancelled> {
+        self.progress.report(step, self.from + (self.to - self.from) * done)
+    }
+}
+
 /// The placement to a place of a coarse grid.
 fn placed(old: Plate, new: Plate, given: &Given, progress: &dyn Progress) -> Result<Placement, ConformError> {
     let scales = place::scales(old.size(), new.size(), given.scale);

@@ -4,7 +4,7 @@
 use proptest::prelude::*;
 use rototoon_base::scene::Footage;
 use rototoon_exchange::import::{
-    ImportError, Shapes, bvh, fusion::fusion, nuke::nuke, silhouette::silhouette, svg::svg, svg::svg_of,
+    ImportError, Shapes, bvh, fusion::fusion, nuke::nuke, silhouette::silhouette, svg::Still, svg::svg, svg::svg_of,
 };
 
 fn footage(last: i32) -> Footage {
@@ -104,7 +104,7 @@ const SEEDS: [&str; 6] = [
 
 /// Every reader gets the text. What it answers does not matter here; that it answers does.
 fn meet_all(text: &str) {
-    let _ = svg_of(text, &footage(9), 0, &["arm", "leg"]);
+    let _ = svg_of(text, &footage(9), Still { frame: 0, asked: false }, &["arm", "leg"]);
     let _ = fusion(text, &footage(9), 0);
     let _ = silhouette(text, &footage(9));
     let _ = nuke(text, &footage(9), 0);

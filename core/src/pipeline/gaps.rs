@@ -46,12 +46,12 @@ pub fn held_gaps(document: &Document, folder: &Path) -> Result<Option<String>, P
     Ok((count > 0).then(told))
 }
 
-/// The frames between the keys of parts, which tracking looks at. How far a part with one key is followed is not known before.
+/// The frames between the keys of parts, which tracking looks at, also where a part is absent: drawings before and after are compared across them. How far a part
+/// with one key is followed is not known before.
 pub(super) fn between_keys(scene: &Scene) -> BTreeSet<FrameNumber> {
     let (first, last) = (scene.footage.first, scene.footage.last);
-    let spans = scene.parts.iter().flat_map(|part| part.spans().into_iter().map(move |span| (part, span)));
-    let there = spans.flat_map(|(part, span)| span.frames().filter(|frame| !part.is_absent(*frame)));
-    there.filter(|frame| (first..=last).contains(frame)).collect()
+    let frames = scene.parts.iter().flat_map(|part| part.spans().into_iter().flat_map(|span| span.frames()));
+    frames.filter(|frame| (first..=last).contains(frame)).collect()
 }
 
 /// The frames on which a part has a contour.
@@ -111,11 +111,11 @@ mod tests {
     }
 
     #[test]
-    fn tracking_needs_the_frames_between_keys_on_which_a_part_is_there() {
+    fn tracking_needs_all_frames_between_keys() {
         let footage =
             Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 12.0, width: 64, height: 48, held: false };
         let scene = Scene { footage, parts: vec![part(&[2, 6], &[[4, 4]]), part(&[9], &[]), part(&[19, 22], &[])] };
-        assert_eq!(between_keys(&scene).into_iter().collect::<Vec<_>>(), [2, 3, 5, 6, 19, 20]);
+        assert_eq!(between_keys(&scene).into_iter().collect::<Vec<_>>(), [2, 3, 4, 5, 6, 19, 20]);
         assert_eq!(with_contours(&scene).collect::<Vec<_>>(), [2, 6, 9, 19]);
     }
 

@@ -12,7 +12,7 @@ use crate::geometry::{Point, polygon};
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
 use crate::project::traced::TracedStroke;
-use crate::scene::FrameNumber;
+use crate::scene::{Colour, FrameNumber};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -99,59 +99,96 @@ pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<S
     Ok(found)
 }
 
-/// The strokes of a document, each with its points on all frames.
+/// The strokes of a document, each with its points on all frames of the footage.
 ///
 /// # Errors
 ///
 /// [`PipelineError::Field`].
 pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineError> {
     let plain = plain(document);
-    let by_frame = strokes(document)?;
+    let mut by_frame = strokes(document)?;
+    // The colour of a traced line is that of its first frame: others are read from their pictures and flicker.
+    let mut traced: BTreeMap<Id, Colour> = BTreeMap::new();
+    for own in by_frame.values().flatten().filter(|own| own.traced) {
+        traced.entry(own.id).or_insert(own.stroke.colour.unwrap_or_default());
+    }
+    let footage = &document.scene.footage;
+    by_frame.retain(|frame, _| (footage.first..=footage.last).contains(frame));
     let lined: BTreeSet<Id> = by_frame.values().flatten().filter(|own| own.is_lined()).map(|own| own.id).collect();
+    let order = common_order(&by_frame);
     let mut found: BTreeMap<Id, SvgStroke> = BTreeMap::new();
     for (frame, mut own) in by_frame.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s))) {
-        let mut width = mean(&own.stroke.widths).unwrap_or(plain);
-        // A stroke whose line is hidden on some frames keeps its fill there, under a line without width.
-        if lined.contains(&own.id) && !own.is_lined() {
-            width = 0.0;
-            own.stroke.fill_colour = Some(own.stroke.colour.take().unwrap_or_default());
-            own.stroke.fill = false;
-        }
-        let known = found.entry(own.id).or_insert_with(|| SvgStroke {
-            name: own.id.to_string(),
-            points: BTreeMap::new(),
-            opacities: BTreeMap::new(),
-            closed: own.stroke.closed,
-            width,
-            widths: BTreeMap::new(),
-            colour: own.stroke.colour.unwrap_or_default(),
-            colours: BTreeMap::new(),
-            fills: BTreeMap::new(),
-            fill: own.stroke.fill,
-            lined: lined.contains(&own.id),
-        });
-        if let Some(colour) = own.stroke.fill_colour {
-            known.fills.insert(frame, colour);
-        }
-        if let Some(colour) = own.stroke.colour.filter(|colour| !own.traced && *colour != known.colour) {
-            known.colours.insert(frame, colour);
-        }
-        known.points.insert(frame, own.stroke.points);
-        if (width - known.width).abs() > ROUNDING {
-            known.widths.insert(frame, width);
-        }
-        if own.opacity < 1.0 {
-            known.opacities.insert(frame, own.opacity);
-        }
+        own.stroke.colour = if own.traced { traced.get(&own.id).copied() } else { own.stroke.colour };
+        let lined = lined.contains(&own.id);
+        let known = found.entry(own.id).or_insert_with(|| begun(&own, lined, plain));
+        add(known, frame, own, plain);
+    }
+    // Else the numbers follow the order of the first drawing.
+    if found.values().any(|stroke| !stroke.fills.is_empty()) {
+        return Ok(order.into_iter().filter_map(|id| found.remove(&id)).collect());
     }
     let mut found: Vec<SvgStroke> = found.into_values().collect();
-    // Else the numbers follow the order of the first drawing.
-    if found.iter().any(|stroke| !stroke.fills.is_empty()) {
-        return Ok(found);
-    }
     let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
     found.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
     Ok(found)
+}
+
+/// A stroke as it begins on its first frame. `lined` says whether it has a line on any frame.
+fn begun(own: &Seen, lined: bool, plain: f64) -> SvgStroke {
+    let hidden = lined && !own.is_lined();
+    SvgStroke {
+        name: own.id.to_string(),
+        closed: own.stroke.closed,
+        width: if hidden { 0.0 } else { mean(&own.stroke.widths).unwrap_or(plain) },
+        colour: own.stroke.colour.unwrap_or_default(),
+        fill: own.stroke.fill && !hidden,
+        lined,
+        ..SvgStroke::default()
+    }
+}
+
+/// Adds a stroke on a frame.
+fn add(known: &mut SvgStroke, frame: FrameNumber, mut own: Seen, plain: f64) {
+    let mut width = mean(&own.stroke.widths).unwrap_or(plain);
+    // A stroke whose line is hidden on some frames keeps its fill there, under a line without width.
+    if known.lined && !own.is_lined() {
+        width = 0.0;
+        own.stroke.fill_colour = Some(own.stroke.colour.take().unwrap_or_default());
+    }
+    if let Some(colour) = own.stroke.fill_colour {
+        known.fills.insert(frame, colour);
+    }
+    if let Some(colour) = own.stroke.colour.filter(|colour| *colour != known.colour) {
+        known.colours.insert(frame, colour);
+    }
+    if own.stroke.closed != known.closed {
+        known.turned.insert(frame);
+    }
+    known.points.insert(frame, own.stroke.points);
+    if (width - known.width).abs() > ROUNDING {
+        known.widths.insert(frame, width);
+    }
+    if own.opacity < 1.0 {
+        known.opacities.insert(frame, own.opacity);
+    }
+}
+
+/// All strokes in one order from back to front. Those of the first frame have its order. A stroke that comes later lies where its frame has it: just over the one
+/// that is behind it there.
+fn common_order(by_frame: &BTreeMap<FrameNumber, Vec<Seen>>) -> Vec<Id> {
+    let mut order: Vec<Id> = Vec::new();
+    let mut known: BTreeSet<Id> = BTreeSet::new();
+    for own in by_frame.values() {
+        let mut before: Option<Id> = None;
+        for seen in own {
+            if known.insert(seen.id) {
+                let place = before.and_then(|id| order.iter().position(|other| *other == id));
+                order.insert(place.map_or(0, |place| place + 1), seen.id);
+            }
+            before = Some(seen.id);
+        }
+    }
+    order
 }
 
 /// Says how many strokes have a width that varies along them, of which an SVG file has the mean; `None` if there are none.

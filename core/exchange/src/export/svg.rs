@@ -14,10 +14,10 @@ use super::names::written;
 use super::outlines::{Detail, Outlines};
 use super::xml::{escaped, plain};
 use rototoon_base::geometry::Point;
-use rototoon_base::geometry::polyline::resample;
+use rototoon_base::geometry::polyline::{resample, segments};
 use rototoon_base::scene::palette;
 use rototoon_base::scene::{Colour, Footage, FrameNumber, Part, Scene};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// Motion of a path between two frames.
@@ -97,6 +97,8 @@ pub struct SvgStroke {
     pub opacities: BTreeMap<FrameNumber, f64>,
     /// Whether the last point joins the first.
     pub closed: bool,
+    /// Frames on which that is otherwise.
+    pub turned: BTreeSet<FrameNumber>,
     /// Its width in pixels.
     pub width: f64,
     /// Its width in pixels on frames on which it is another one.
@@ -210,12 +212,19 @@ fn fill(out: &mut String, scene: &Scene, fill: &SvgFill) {
 }
 
 fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOptions) {
-    // The same number of points on every frame, as for parts.
-    let most = stroke.points.values().map(Vec::len).max().unwrap_or(0);
+    // The same number of points on every frame that is shown, as for parts.
+    let shown = stroke.points.range(scene.footage.first..=scene.footage.last);
+    let most = shown.map(|(_, points)| points.len()).max().unwrap_or(0);
     let shape = |frame: FrameNumber| {
         let points = stroke.points.get(&frame).filter(|points| !points.is_empty())?;
-        let even = if points.len() == most { points.clone() } else { resample(points, stroke.closed, most) };
-        Some(data(&even, stroke.closed))
+        let closed = stroke.closed != stroke.turned.contains(&frame);
+        let even = match options.motion {
+            _ if points.len() == most => points.clone(),
+            // Points go evenly from place to place.
+            Motion::Linear => resample(points, closed, most),
+            Motion::Hold => filled(points, closed, most),
+        };
+        Some(data(&even, closed))
     };
     let (id, colour, width) = (stroke.name.replace(' ', "-"), palette::hex(stroke.colour), decimal(stroke.width, 2));
     let start = (scene.footage.first..=scene.footage.last).find(|frame| stroke.points.contains_key(frame));
@@ -227,6 +236,25 @@ fn stroke(out: &mut String, scene: &Scene, stroke: &SvgStroke, options: &SvgOpti
     let style = format!("id=\"{id}\" fill=\"{fill}\" {line}");
     let looks = looks(scene, stroke, options.motion);
     path(out, scene, &style, (&stroke.name, &stroke.opacities, &looks), options.motion, shape);
+}
+
+/// The same line with `count` points. Its own points stay, so corners do too; others are put where two are farthest apart.
+fn filled(points: &[Point], closed: bool, count: usize) -> Vec<Point> {
+    let sides: Vec<(Point, Point)> = segments(points, closed).collect();
+    let mut pieces = vec![1; sides.len()];
+    let gap = |k: usize, pieces: &[usize]| sides[k].0.distance(sides[k].1) / pieces[k] as f64;
+    for _ in points.len()..count {
+        let widest = (0..sides.len()).reduce(|best, k| if gap(k, &pieces) > gap(best, &pieces) { k } else { best });
+        match widest {
+            Some(k) => pieces[k] += 1,
+            None => return resample(points, closed, count),
+        }
+    }
+    let along = sides
+        .iter()
+        .zip(&pieces)
+        .flat_map(|(&(a, b), &pieces)| (0..pieces).map(move |k| a.lerp(b, k as f64 / pieces as f64)));
+    along.chain(points.last().copied().filter(|_| !closed)).collect()
 }
 
 /// The animations of a stroke's width and colours; none of what is always the same.

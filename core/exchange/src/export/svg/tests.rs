@@ -203,3 +203,28 @@ fn a_picture_at_the_time_of_a_frame_shows_that_frame() {
         }
     }
 }
+
+#[test]
+fn a_stroke_keeps_its_corners_and_is_closed_by_frame() {
+    let of = |points: &[(f64, f64)]| points.iter().copied().map(Point::from).collect::<Vec<_>>();
+    let corner = of(&[(2.0, 2.0), (52.0, 2.0), (52.0, 20.0)]);
+    assert_eq!(filled(&corner, false, 4), of(&[(2.0, 2.0), (27.0, 2.0), (52.0, 2.0), (52.0, 20.0)]));
+    assert_eq!(filled(&corner, true, 4).len(), 4);
+    assert_eq!(filled(&corner[..1], false, 2).len(), 2);
+    let points = BTreeMap::from([(1, corner.clone()), (2, of(&[(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0)]))]);
+    let line = SvgStroke {
+        name: "stroke 3".into(),
+        points,
+        turned: [2].into(),
+        lined: true,
+        width: 1.0,
+        ..SvgStroke::default()
+    };
+    let footage = Footage { pattern: "%d".into(), first: 1, last: 2, fps: 10.0, width: 64, height: 48, held: false };
+    let scene = Scene { footage, parts: Vec::new() };
+    let text = svg_with_drawn(&scene, &[], std::slice::from_ref(&line), &SvgOptions::default());
+    assert_eq!(attribute(&text, "values"), ["M2 2L27 2 52 2 52 20;M0 0L9 0 9 9 0 9Z"]);
+    let one = Scene { footage: Footage { last: 1, ..scene.footage }, parts: Vec::new() };
+    let text = svg_with_drawn(&one, &[], &[line], &SvgOptions::default());
+    assert!(text.contains("d=\"M2 2L52 2 52 20\""), "a frame alone has its own points: {text}");
+}
