@@ -207,7 +207,8 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern, inp
     (complete.scene.footage.first..=complete.scene.footage.last).try_for_each(written)?;
     let (left_out, scene) = (pipeline::left_out_of_shapes(&complete, "svg"), &complete.scene);
     let outside = outside(document, &asked);
-    let warnings = [outside, left_out, pipeline::untracked(scene), pipeline::outdated(scene)];
+    let squeezed = pipeline::squeezed(pipeline::pixel_aspect(document, &project::home(document, from)), "svg");
+    let warnings = [outside, left_out, squeezed, pipeline::untracked(scene), pipeline::outdated(scene)];
     warn(to, warnings.iter().flatten().chain(&changed(given, document)?));
     Ok(())
 }

@@ -94,11 +94,13 @@ pub fn snap_scene(
     Ok(curves)
 }
 
-/// For each frame, the parts that have a contour on it, with the contour.
+/// For each frame of the footage, the parts that have a contour on it, with the contour. Contours beyond it or where the part is absent have no picture to look
+/// at.
 fn contours_by_frame(scene: &Scene) -> BTreeMap<FrameNumber, Contours<'_>> {
     let mut work: BTreeMap<FrameNumber, Contours> = BTreeMap::new();
     for (index, part) in scene.parts.iter().enumerate() {
-        for (&frame, points) in contours(part) {
+        let within = contours(part).range(scene.footage.first..=scene.footage.last);
+        for (&frame, points) in within.filter(|(frame, _)| !part.is_absent(**frame)) {
             work.entry(frame).or_default().push((index, points));
         }
     }
@@ -251,6 +253,7 @@ mod tests {
             }
         }
         let mut scene = scene();
+        scene.footage.last = 12;
         scene.parts[0].tracks = (0..=12).map(|f| (f, ring(f / 3))).collect();
         scene.parts[0].tracks.insert(4, ring(2));
         scene.parts[1].tracks = [3, 5, 6, 7].map(|f| (f, ring(f / 3))).into();
@@ -272,10 +275,21 @@ mod tests {
     #[test]
     fn a_missing_picture_is_named() {
         let mut scene = scene();
+        scene.footage.last = 7;
         scene.parts[1].keys.insert(7, ring(7));
         let source = Disc { asked: AtomicUsize::new(0) };
         let error = snap_scene(&scene, &source, &SnapOptions::default(), &Silent).unwrap_err();
         assert_eq!(error.to_string(), "frame 7 is outside the footage, which has frames 0 to 6");
+    }
+
+    #[test]
+    fn contours_without_a_picture_are_left_out() {
+        let mut scene = scene();
+        scene.parts[0].tracks.insert(7, ring(7));
+        scene.parts[0].set_absent(4, 4);
+        let source = Disc { asked: AtomicUsize::new(0) };
+        let curves = snap_scene(&scene, &source, &SnapOptions::default(), &Silent).unwrap();
+        assert_eq!(curves[0].keys().copied().collect::<Vec<_>>(), [0, 1, 2, 3, 5, 6]);
     }
 
     #[test]

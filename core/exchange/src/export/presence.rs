@@ -39,7 +39,14 @@ fn away(part: &Part, from: FrameNumber, to: FrameNumber) -> Vec<[FrameNumber; 2]
     let within = |&[first, last]: &[FrameNumber; 2]| [first.max(from), last.saturating_add(1).min(to)];
     let mut found: Vec<_> = part.absent.iter().map(within).filter(|[first, after]| first < after).collect();
     found.sort_unstable();
-    found
+    let mut joined: Vec<[FrameNumber; 2]> = Vec::new();
+    for [first, after] in found {
+        match joined.last_mut() {
+            Some([_, end]) if first <= *end => *end = after.max(*end),
+            _ => joined.push([first, after]),
+        }
+    }
+    joined
 }
 
 /// Adds a change. Of two on one frame the later one counts, and what stays as it was is no change.
@@ -94,5 +101,15 @@ mod tests {
             changes(false, &[1, 7, 9], &[[6, 8], [2, 3], [4, 4], [3, 4]]),
             [(1, true), (2, false), (5, true), (6, false), (7, true), (8, false), (9, true)]
         );
+    }
+
+    #[test]
+    fn times_within_each_other_are_one() {
+        let keys: Vec<(FrameNumber, ())> = vec![(1, ()), (10, ())];
+        let part = Part { absent: vec![[3, 8], [5, 6], [8, 8]], ..Part::default() };
+        assert_eq!(away(&part, 2, 10), [[3, 9]]);
+        let footage =
+            Footage { pattern: "%d".into(), first: 1, last: 10, fps: 1.0, width: 9, height: 9, held: false };
+        assert_eq!(presence(&part, &keys, &footage), [(1, true), (3, false), (9, true)]);
     }
 }

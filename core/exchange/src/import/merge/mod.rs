@@ -260,7 +260,10 @@ fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &dyn Compa
     let known = part.keys.keys().chain(part.tracks.keys()).chain(shape.keys.keys());
     let hidden = (footage.first..=footage.last).filter(|&frame| part.is_absent(frame));
     let unseen = (footage.first..=footage.last).filter(|&frame| shape.extent.hides(frame));
-    let mut frames: BTreeSet<FrameNumber> = known.copied().chain(hidden).chain(unseen).collect();
+    // A gap of a tracked part may have been filled.
+    let gaps = (footage.first..=footage.last)
+        .filter(|frame| !part.tracks.is_empty() && shape.extent.has_between_keys(*frame) && !part.is_absent(*frame));
+    let mut frames: BTreeSet<FrameNumber> = known.copied().chain(hidden).chain(unseen).chain(gaps).collect();
     let still = is_still(part);
     frames.retain(|&frame| shape.extent.speaks_of(frame, still));
     let mut changed = Vec::new();
