@@ -172,6 +172,58 @@ fn svg_of_a_pattern_is_a_file_for_each_frame() {
 }
 
 #[test]
+fn a_file_for_each_frame_lies_on_its_own_frame_and_may_be_empty() {
+    let folder = Folder::new();
+    let (captured, out) = (folder.captured(), folder.path("o.json"));
+    let file = |frame: i32| folder.path(&format!("f_{frame:04}.svg"));
+    let pattern = folder.path("f_%04d.svg");
+    let export = ["export", text(&captured), "-o", text(&pattern), "--part", "triangle"];
+    run(&export, 0);
+    let (empty, third) = (fs::read_to_string(file(0)).unwrap(), fs::read_to_string(file(3)).unwrap());
+    assert!(!empty.contains("<path") && third.contains("<path"), "the triangle is there from frame 2 on");
+    let said = run(&["import", text(&captured), text(&pattern), "-o", text(&out)], 0);
+    assert!(said.contains("as before \"triangle\""), "{said}");
+    // A drawing that is held on the next frame too.
+    fs::copy(file(3), file(4)).unwrap();
+    let said = run(&["import", text(&captured), text(&pattern), "-o", text(&out)], 0);
+    assert!(said.contains("changed \"triangle\" on 4;"), "{said}");
+    same(&[(4, parts(&out)[0].2[&4].clone())].into(), &[(4, triangle()[&3].clone())].into(), 0.005 + 1e-9);
+    let said = run(&["import", text(&captured), text(&file(3)), "-o", text(&out), "--frame", "5"], 0);
+    assert!(said.contains("changed \"triangle\" on 5;"), "{said}");
+    let film = folder.path("film.svg");
+    run(&["export", text(&captured), "-o", text(&film)], 0);
+    let said = run(&["import", text(&captured), text(&film), "-o", text(&out), "--frame", "5"], 1);
+    assert!(said.contains("found the frames 0 to 8, expected one frame for frame 5"), "{said}");
+    for frame in 0..=8 {
+        fs::write(file(frame), &empty).unwrap();
+    }
+    assert!(run(&["import", text(&captured), text(&pattern), "-o", text(&out)], 1).contains("found no shape"));
+}
+
+#[test]
+fn a_range_with_a_part_that_comes_within_it_changes_no_other_frame() {
+    let folder = Folder::new();
+    let (captured, out) = (folder.captured(), folder.path("o.json"));
+    let mut document: Value = serde_json::from_str(&fs::read_to_string(&captured).unwrap()).unwrap();
+    let part = &mut document["parts"][0];
+    part["keys"]["2"] = part["tracks"]["2"].clone();
+    part["absent"] = json!([[3, 4]]);
+    for frame in ["3", "4"] {
+        part["tracks"].as_object_mut().unwrap().remove(frame);
+    }
+    fs::write(&captured, document.to_string()).unwrap();
+    for extension in ["nk", "ntp", "fxs", "setting", "svg"] {
+        let shapes = folder.path(&format!("a.{extension}"));
+        run(&["export", text(&captured), "-o", text(&shapes), "--frames", "4-5", "--part", "triangle"], 0);
+        let said = run(&["import", text(&captured), text(&shapes), "-o", text(&out)], 0);
+        assert!(said.contains("as before \"triangle\""), "{extension}: {said}");
+        let after: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
+        assert_eq!(after["parts"][0]["absent"], json!([[3, 4]]), "{extension}");
+        assert_eq!(parts(&out)[0].2, parts(&captured)[0].2, "{extension}");
+    }
+}
+
+#[test]
 fn a_shape_changes_the_part_of_its_name() {
     let folder = Folder::new();
     let (shapes, captured) = (folder.path("a.svg"), folder.captured());

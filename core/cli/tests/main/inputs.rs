@@ -60,8 +60,10 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 #[test]
 fn an_output_that_is_an_input_is_refused_and_nothing_changes() {
     let folder = files();
+    assert!(run(folder.path(), &["style", "library", "add", "shelf", "clips.json"]).status.success());
     let before = contents(folder.path());
     let (frame, clips) = ("frames/f_002.png", "clips.json");
+    let (kept, index) = ("shelf/old-walk.clip.json", "shelf/library.json");
     for words in [
         &["render", "shot.json", "-o", "frames/f_003.png", "--frames", "1"][..],
         &["render", "shot.json", "-o", "frames/f_%03d.png"],
@@ -78,12 +80,31 @@ fn an_output_that_is_an_input_is_refused_and_nothing_changes() {
         &["style", "import", "walk.bvh", "-o", "walk.bvh"],
         &["style", "import", "walk.bvh", "--joints", "joints.json", "-o", "joints.json"],
         &["style", "reshape", "shot.json", clips, "-o", clips],
+        &["track", "shot.json", "-o", "tracked.json", "--report", "./shot.json"],
+        &["track", "shot.json", "-o", "tracked.json", "--report", frame],
+        &["conform", "shot.json", "--footage", "frames/f_%03d.png", "-o", "new.json", "--report", "shot.json"],
+        &["style", "translate", "shelf", "--style", "old", "--motion", "walk", "--content", "old", "-o", kept],
+        &["style", "translate", "shelf", "--style", "old", "--motion", "walk", "--content", "old", "-o", index],
+        &["style", "reshape", "shot.json", "shelf", "--motion", "walk", "-o", kept],
     ] {
         let output = run(folder.path(), words);
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
         assert!(said.contains("that the command reads"), "{words:?}: {said}");
         assert_eq!(contents(folder.path()), before, "{words:?}");
+    }
+}
+
+#[test]
+fn a_report_does_not_go_over_the_output() {
+    let folder = files();
+    let before = contents(folder.path());
+    for report in ["tracked.json", "./tracked.json", "frames/../tracked.json"] {
+        let output = run(folder.path(), &["track", "shot.json", "-o", "tracked.json", "--report", report]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains("--report: found") && said.contains("expected another file than the output"), "{said}");
+        assert_eq!(contents(folder.path()), before, "{report}");
     }
 }
 

@@ -108,8 +108,7 @@ mod tests {
         let keys: Vec<(FrameNumber, ())> = vec![(1, ()), (10, ())];
         let part = Part { absent: vec![[3, 8], [5, 6], [8, 8]], ..Part::default() };
         assert_eq!(away(&part, 2, 10), [[3, 9]]);
-        let footage =
-            Footage { pattern: "%d".into(), first: 1, last: 10, fps: 1.0, width: 9, height: 9, held: false };
+        let footage = Footage { pattern: "%d".into(), first: 1, last: 10, fps: 1.0, width: 9, height: 9, held: false };
         assert_eq!(presence(&part, &keys, &footage), [(1, true), (3, false), (9, true)]);
     }
 }
