@@ -2,7 +2,7 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
-use super::state::FileMark;
+use super::state::{FileMark, State};
 use super::track::BUSY;
 use super::{choosing, edits, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
 use crate::description::SOURCE;
@@ -109,12 +109,19 @@ fn path(effect: &Effect) -> Result<PathBuf, Failure> {
     Ok(PathBuf::from(effect.parameters()?.text(c"project")?.trim()))
 }
 
-/// Whether Project names a file other than the one whose shapes the composition has.
+/// Whether Project names a file of which the composition has no shapes. Those that it has from a file, or has saved to one,
+/// may have been changed since; only *Load* replaces them by what the file holds.
 fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
     let (path, parameters) = (path(effect)?, effect.parameters()?);
+    if !path.is_file() || saving::has_saved(effect, &path)? {
+        return Ok(false);
+    }
+    let is_known = |state: &State| {
+        let read = state.read.as_ref().map(|file| file.path.as_str());
+        [Some(state.loaded.as_str()), read].into_iter().flatten().any(|known| saving::is_same(known, &path))
+    };
     let empty = parameters.text(c"document")?.trim().is_empty();
-    let loaded = instance(effect)?.state(&parameters).is_ok_and(|state| Path::new(&state.loaded) == path);
-    Ok(path.is_file() && (empty || !loaded))
+    Ok(empty || !instance(effect)?.state(&parameters).is_ok_and(|state| is_known(&state)))
 }
 
 /// The project's path, which the user must have chosen.

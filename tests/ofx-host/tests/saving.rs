@@ -1,6 +1,6 @@
 //! Tests of *Save* beside other programs: what they wrote stays, whatever is undone, and in compositions that are opened again.
 
-use crate::common::{FILTER, OK, clean, document, effect, host, scene};
+use crate::common::{FILTER, OK, clean, document, effect, host, kept, scene};
 use rototoon::project::Document;
 use rototoon_ofx_host::{ClipSettings, Effect, Host};
 use std::path::{Path, PathBuf};
@@ -105,5 +105,56 @@ fn what_the_node_saved_is_its_own_whatever_is_undone() {
     effect.set_text_silently("project", other.to_str().unwrap());
     assert_eq!(effect.press("save"), OK);
     assert_eq!(Document::load(&other).unwrap().scene, Document::load(&file).unwrap().scene);
+    clean(&host);
+}
+
+fn names(effect: &Effect) -> Vec<String> {
+    kept(effect).scene.parts.into_iter().map(|part| part.name).collect()
+}
+
+#[test]
+fn a_saved_file_is_not_read_over_what_was_made_since() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = folder.path().join("mine.json");
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set_text("project", file.to_str().unwrap());
+    assert_eq!(effect.press("save"), OK, "{:?}", host.messages());
+    effect.set_text("part", "drop");
+    assert_eq!(effect.press("deletePart"), OK, "{:?}", host.messages());
+    // The same file is chosen again, by another way too, and a host reports its values as it opens the composition.
+    for same in [file.clone(), folder.path().join(".").join("mine.json")] {
+        effect.set_text("project", same.to_str().unwrap());
+        assert_eq!(names(&effect), ["star", "ground line"]);
+    }
+    assert_eq!(effect.press("load"), OK);
+    assert_eq!(names(&effect), ["star", "drop", "ground line"], "Load reads it");
+    // Shapes of another file are no later state of those that were saved.
+    let other = folder.path().join("other.json");
+    std::fs::write(&other, theirs().replace("star", "sun")).unwrap();
+    effect.set_text("project", other.to_str().unwrap());
+    assert_eq!(names(&effect)[0], "sun");
+    effect.set_text("project", file.to_str().unwrap());
+    assert_eq!(names(&effect)[0], "star");
+    clean(&host);
+}
+
+#[test]
+fn after_an_import_the_loaded_file_is_chosen_again_to_save_there() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = project(folder.path());
+    let svg = folder.path().join("other.svg");
+    std::fs::write(
+        &svg,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\"><path id=\"box\" d=\"M 1 1 L 9 1 L 9 9 Z\"/></svg>",
+    )
+    .unwrap();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set_text_silently("document", "");
+    for chosen in [&file, &svg, &file] {
+        effect.set_text("project", chosen.to_str().unwrap());
+    }
+    assert_eq!(names(&effect), ["star", "drop", "ground line", "box"], "{:?}", host.messages());
+    assert_eq!(effect.press("save"), OK, "{:?}", host.messages());
+    assert_eq!(Document::load(&file).unwrap().scene.parts.len(), 4);
     clean(&host);
 }
