@@ -7,7 +7,7 @@
 //!
 //! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
 //! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
-//! contour is drawn in one stroke.
+//! contour is drawn in one stroke. Only with *Select* do Delete and Backspace delete what is selected.
 
 use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
@@ -36,9 +36,9 @@ pub enum Tool {
 /// A key of the keyboard that means something here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Deletes the selected points.
+    /// Deletes the selected points with the tool *Select*.
     Delete,
-    /// Takes the last point back, or deletes.
+    /// Takes the last point back, or deletes as the other one does.
     Back,
     /// Drops the unfinished work, or the selection.
     Escape,
@@ -452,7 +452,9 @@ impl Editor {
                 }
                 return Outcome::Shown;
             }
-            Key::Delete | Key::Back if !self.selection.is_empty() && work.tool != Tool::Off => {
+            // The part that was drawn last is selected. One key too many must not delete it, and in the host it may delete a node.
+            Key::Delete | Key::Back if matches!(work.tool, Tool::Contour | Tool::Freehand) => return Outcome::Shown,
+            Key::Delete | Key::Back if !self.selection.is_empty() && work.tool == Tool::Select => {
                 return self.delete_selected(work);
             }
             Key::Delete | Key::Back | Key::Escape => {}

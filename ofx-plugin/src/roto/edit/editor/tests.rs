@@ -152,6 +152,27 @@ fn wrong_contours_are_refused_and_unfinished_ones_dropped() {
 }
 
 #[test]
+fn a_key_too_many_while_drawing_deletes_nothing() {
+    let document = document();
+    let (mut editor, mut work) = (Editor::default(), work(&document));
+    work.tool = Tool::Contour;
+    for at in [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)] {
+        editor.down(&work, at);
+    }
+    let drawn = edited(editor.key(&work, Key::Enter));
+    let mut next = Work { document: &drawn, parts: &[0, 1, 2], ..work };
+    assert_eq!(editor.selection.parts(), [2].into(), "the new part is selected");
+    editor.down(&next, p(10.0, 10.0));
+    for key in [Key::Back, Key::Back, Key::Delete] {
+        assert!(matches!(editor.key(&next, key), Outcome::Shown), "{key:?}");
+    }
+    next.tool = Tool::Freehand;
+    assert!(matches!(editor.key(&next, Key::Back), Outcome::Shown));
+    next.tool = Tool::Select;
+    assert_eq!(edited(editor.key(&next, Key::Back)).scene.parts.len(), 2);
+}
+
+#[test]
 fn points_are_inserted_deleted_and_smoothed() {
     let document = document();
     let (mut editor, work) = (Editor::default(), work(&document));
