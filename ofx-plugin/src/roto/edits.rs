@@ -184,8 +184,7 @@ impl Bench {
             return Err(Failure::Told(format!("Part: {}", NoSuchPart::of(&document.scene.parts, name))));
         }
         if let Some(part) = chosen.filter(|part| !parts.contains(part)) {
-            let name = &document.scene.parts[part].name;
-            return Err(Failure::Told(format!("{name:?} is locked or not among Parts")));
+            return Err(Failure::Told(Refused::protected(&document.scene.parts[part].name).0));
         }
         let place = usize::try_from(parameters.int(c"place", time)?).unwrap_or(1);
         Ok(Self { document, frame, parts, chosen, place })

@@ -298,6 +298,11 @@ fn locked_parts_are_left_alone() {
     let at = scene().parts[0].tracks[&2][0];
     drag(&mut effect, 2.0, at, at + Point::new(3.0, 2.0));
     assert_eq!(effect.press_at("deletePart", 2.0), "kOfxStatFailed");
+    // Nor does a contour that is drawn replace its key.
+    effect.set("tool", &[FREEHAND]);
+    drag(&mut effect, 0.0, at, at + Point::new(3.0, 2.0));
+    effect.set("tool", &[0.0]);
+    assert!(host.messages().iter().any(|text| text.contains("\"star\" is locked or not among Parts")));
     // The lock belongs to the part, also when another one is selected.
     effect.set_text("part", "drop");
     assert_eq!(effect.get("partLock", 0.0), [0.0]);

@@ -69,6 +69,14 @@ pub struct Work<'a> {
     pub name: &'a str,
 }
 
+impl Work<'_> {
+    /// Why nothing can be drawn: the part that is named must not be changed.
+    fn refusal(&self) -> Option<Refused> {
+        let named = self.document.scene.parts.iter().position(|part| part.name == self.name);
+        named.filter(|part| !self.parts.contains(part)).map(|_| Refused::protected(self.name))
+    }
+}
+
 /// What an event led to.
 #[derive(Clone, Debug)]
 pub enum Outcome {
@@ -235,6 +243,11 @@ impl Editor {
         self.selection.keep_existing(&work.document.scene);
         self.drag = None;
         self.pressed = work.tool != Tool::Off;
+        if matches!(work.tool, Tool::Contour | Tool::Freehand)
+            && let Some(refused) = work.refusal()
+        {
+            return Outcome::Refused(refused);
+        }
         match work.tool {
             Tool::Off => Outcome::Ignored,
             Tool::Contour => self.set_point(work, pen),
@@ -438,6 +451,10 @@ impl Editor {
                 return self.selected(work);
             }
             Key::Enter => {
+                // The contour stays, so that it can be finished when the part may be changed again.
+                if let Some(refused) = self.sketch(work.frame).and_then(|_| work.refusal()) {
+                    return Outcome::Refused(refused);
+                }
                 if let Some(sketch) = self.sketch.take_if(|sketch| sketch.frame == work.frame) {
                     return self.finish(work, sketch.points);
                 }

@@ -173,6 +173,34 @@ fn a_key_too_many_while_drawing_deletes_nothing() {
 }
 
 #[test]
+fn parts_that_must_not_be_changed_are_neither_drawn_nor_changed() {
+    let document = document();
+    let mut work = Work { parts: &[1], ..work(&document) };
+    let mut editor = Editor { selection: Selection::part(0, &document.scene), ..Editor::default() };
+    let protected =
+        |outcome| matches!(outcome, Outcome::Refused(text) if text.0 == "\"square\" is locked or not among Parts");
+    assert!(protected(editor.insert_between(&work)) && protected(editor.smooth_selected(&work)));
+    assert!(protected(editor.delete_selected(&work)) && protected(editor.feather_selected(&work, 3.0)));
+    // Of several parts those are changed that may be.
+    editor.selection.add(&Selection::part(1, &document.scene));
+    let inserted = edited(editor.insert_between(&work));
+    assert_eq!([0, 1].map(|part| inserted.scene.parts[part].point_count()), [4, 3]);
+    for tool in [Tool::Contour, Tool::Freehand] {
+        (work.tool, work.name) = (tool, "square");
+        assert!(protected(editor.down(&work, p(10.0, 10.0))) && editor.sketch(FRAME).is_none());
+        assert!(matches!(editor.up(&work, p(10.0, 10.0)), Outcome::Shown));
+    }
+    // A contour that was begun before stays, and is finished when the part may be changed again.
+    let open = Work { parts: &[0, 1], tool: Tool::Contour, ..work };
+    for at in [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)] {
+        editor.down(&open, at);
+    }
+    work.tool = Tool::Contour;
+    assert!(protected(editor.key(&work, Key::Enter)) && protected(editor.down(&work, p(100.0, 40.0))));
+    assert_eq!(edited(editor.key(&open, Key::Enter)).scene.parts[0].keys.len(), 3);
+}
+
+#[test]
 fn points_are_inserted_deleted_and_smoothed() {
     let document = document();
     let (mut editor, work) = (Editor::default(), work(&document));
