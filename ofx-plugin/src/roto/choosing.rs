@@ -43,9 +43,11 @@ fn select(effect: &Effect, parameters: &Parameters, name: &str) -> Result<(), Fa
     let instance = instance(effect)?;
     let document = instance.document(parameters)?;
     let part = document.as_ref().and_then(|all| all.scene.parts.iter().position(|part| part.name == name));
-    instance.editor().selection = match (part, &document) {
-        (Some(part), Some(document)) => Selection::part(part, &document.scene),
-        _ => Selection::default(),
-    };
+    match (part, &document) {
+        (Some(part), Some(document)) => {
+            instance.editor().select(Selection::part(part, &document.scene), &document.scene);
+        }
+        _ => instance.editor().selection = Selection::default(),
+    }
     edits::select(effect, name)
 }

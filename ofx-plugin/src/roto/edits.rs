@@ -223,6 +223,7 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
     let width = effect.parameters()?.double(c"pointFeather", time)?;
     let outcome = {
         let mut editor = instance(effect)?.editor();
+        editor.follow(&bench.document.scene);
         match name {
             "insertPoints" => editor.insert_between(&work),
             "deletePoints" if editor.selection.is_empty() => refused("select points first"),
@@ -263,6 +264,7 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
         parameters.set_text(c"part", new)?;
         put(&parameters, &document, state, &page)
     })?;
+    instance.editor().rename(&old, new);
     listing::refresh(effect);
     Ok(())
 }

@@ -123,7 +123,8 @@ pub fn perform(view: &View) -> Result<(), Failure> {
     let shown = Shown::of(view)?;
     if view.event == Event::Draw {
         // A copy, so that the host may call back while it draws.
-        let editor = instance.editor().clone();
+        let mut editor = instance.editor().clone();
+        editor.follow(&shown.document.scene);
         canvas::draw(view, &shown, &editor);
         return Ok(());
     }

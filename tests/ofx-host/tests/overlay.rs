@@ -282,6 +282,9 @@ fn buttons_make_and_delete_keys_points_and_parts() {
     effect.set_text("part", "star");
     assert_eq!(effect.press_at("deletePart", 2.0), OK);
     assert_eq!((kept(&effect).scene.parts.len(), effect.text("part").as_str()), (2, ""));
+    // The part that has its place now is not selected.
+    assert_eq!(effect.overlay_key(KEY, 2.0, DELETE), NOT_OURS);
+    assert_eq!(kept(&effect).scene.parts.len(), 2);
     effect.undo();
     assert_eq!((kept(&effect).scene.parts.len(), effect.text("part").as_str()), (3, "star"));
     assert_eq!(effect.press_at("newPart", 2.0), OK);

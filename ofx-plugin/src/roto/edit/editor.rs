@@ -13,7 +13,7 @@ use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{FrameNumber, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Movement of the pen in screen pixels up to which a press is a click.
@@ -141,6 +141,8 @@ pub struct Sketch {
 pub struct Editor {
     /// The selected points.
     pub selection: Selection,
+    /// The names of the parts that the selection counts.
+    names: Vec<String>,
     drag: Option<Drag>,
     sketch: Option<Sketch>,
     /// Whether the last press of the pen was handled here, so that its release is too.
@@ -150,6 +152,25 @@ pub struct Editor {
 }
 
 impl Editor {
+    /// Keeps the selection to the parts that it was made on, whatever became of the document since.
+    pub fn follow(&mut self, scene: &Scene) {
+        self.selection.keep_existing(&self.names, scene);
+        if !self.names.iter().eq(scene.parts.iter().map(|part| &part.name)) {
+            self.names = scene.parts.iter().map(|part| part.name.clone()).collect();
+        }
+    }
+
+    /// Selects points of a document's parts.
+    pub fn select(&mut self, selection: Selection, scene: &Scene) {
+        self.follow(scene);
+        self.selection = selection;
+    }
+
+    /// A part has another name, and stays selected.
+    pub fn rename(&mut self, old: &str, new: &str) {
+        self.names.iter_mut().filter(|name| *name == old).for_each(|name| new.clone_into(name));
+    }
+
     /// The contour that is being drawn on a frame.
     pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
         self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
@@ -240,7 +261,7 @@ impl Editor {
 
     /// The pen goes down.
     pub fn down(&mut self, work: &Work, pen: Point) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
+        self.follow(&work.document.scene);
         self.drag = None;
         self.pressed = work.tool != Tool::Off;
         if matches!(work.tool, Tool::Contour | Tool::Freehand)
@@ -341,7 +362,7 @@ impl Editor {
         let mut document = work.document.clone();
         match contour::draw(&mut document, work.frame, work.name, points, work.closed, work.tool != Tool::Freehand) {
             Ok(part) => {
-                self.selection = Selection::part(part, &document.scene);
+                self.select(Selection::part(part, &document.scene), &document.scene);
                 Outcome::Edited(Edit { label: "Draw contour", document })
             }
             Err(refused) => Outcome::Refused(refused),
@@ -369,6 +390,7 @@ impl Editor {
 
     /// The pen goes up.
     pub fn up(&mut self, work: &Work, pen: Point) -> Outcome {
+        self.follow(&work.document.scene);
         let pressed = std::mem::take(&mut self.pressed);
         let Some(drag) = &mut self.drag else {
             return if pressed { Outcome::Shown } else { Outcome::Ignored };
@@ -439,6 +461,7 @@ impl Editor {
 
     /// A key of the keyboard goes down or up.
     pub fn key(&mut self, work: &Work, key: Key) -> Outcome {
+        self.follow(&work.document.scene);
         match key {
             Key::Shift(down) => self.shift = down,
             Key::Control(down) => self.control = down,

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 impl Editor {
     /// The parts with selected points that may be changed.
     fn changeable(&mut self, work: &Work) -> Result<BTreeSet<usize>, Refused> {
-        self.selection.keep_existing(&work.document.scene);
+        self.follow(&work.document.scene);
         let mut parts = self.selection.parts();
         let first = parts.first().copied();
         parts.retain(|part| work.parts.contains(part));
