@@ -1,6 +1,7 @@
 //! Stores edits and selections in the host's parameters, each as one step of the host's undo.
 
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
+use super::job::Tracked;
 use super::parts::selected;
 use super::settings::Settings;
 use super::shared::Loaded;
@@ -9,7 +10,7 @@ use super::{follow, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::{FrameNumber, NoSuchPart};
+use rototoon::scene::{FrameNumber, NoSuchPart, Part};
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -55,6 +56,7 @@ fn store_from(
         }
         if let Some(before) = &before {
             state.note_known(&before.scene.parts);
+            state.note_changed(&before.scene.parts, &document.scene.parts, &document.scene.footage);
             state.note_order(&before.scene.parts, &document.scene.parts);
             let stale = instance.stale();
             state.note_stale(before.scene.parts.iter().filter(|part| stale.has(part)));
@@ -69,23 +71,23 @@ fn store_from(
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     edited(&mut state, &document);
-    if let Some((followed, tracked)) = followed {
-        state.note_tracked(tracked.iter().map(|&part| &followed.scene.parts[part]));
-        document = followed;
+    if let Some(followed) = followed {
+        state.note_tracked_spans(&document.scene.parts, &followed);
+        document = followed.document;
     }
     write(effect, label, &document, state, &page)
 }
 
-/// Stores a tracked document.
-pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) -> Result<(), Failure> {
+/// Stores a tracked document. `before` are its parts before that.
+pub fn store_tracked(effect: &Effect, before: &[Part], tracked: &Tracked) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
     if instance.document_of_text(&parameters)?.is_none() {
         instance.shown_file(&parameters)?.iter().for_each(|file| state.note_file(file));
     }
-    state.note_tracked(tracked.iter().map(|&part| &document.scene.parts[part]));
+    state.note_tracked_spans(before, tracked);
     let page = state.page.clone();
-    write(effect, "Track", document, state, &page)
+    write(effect, "Track", &tracked.document, state, &page)
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
@@ -94,6 +96,7 @@ pub fn store_loaded(effect: &Effect, document: &Document, file: &FileMark) -> Re
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     state.tracked.clear();
+    state.changed.clear();
     state.note_file(file);
     state.keep_only(&document.scene.parts);
     write(effect, "Load project", document, state, &page)

@@ -26,6 +26,7 @@
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
 //!   [`id_files`]: writes ids as files for keyers; [`numbering`]: the composition's frames in these files
 //! - [`track`]: the button Track; [`job`]: runs the core's tracker on the source's frames, which [`fetching`] gets from the host
+//! - [`spans`]: which spans of parts wait for Track
 //! - [`follow`]: tracks an edit at once, on the [`film`] that stays in memory; [`watch`]: compares rendered frames with it, by
 //!   their [`sums`]; [`stale`]: tracks of a source that has changed
 
@@ -62,6 +63,7 @@ pub mod render;
 pub mod saving;
 pub mod settings;
 pub mod shared;
+pub mod spans;
 pub mod stale;
 pub mod standing;
 pub mod state;
