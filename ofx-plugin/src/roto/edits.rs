@@ -176,10 +176,10 @@ impl Bench {
         };
         let state = instance.state(&parameters)?;
         let settings = Settings::read(&parameters, time, &state)?;
-        let frame = settings.document_time.round() as FrameNumber;
+        let frame = settings.frame();
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
         parts.retain(|&part| !is_locked(&parameters, &state, &document.scene.parts[part].name));
-        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
+        order::sort_on(&document.scene, frame, &mut parts);
         let name = parameters.text(c"part")?;
         let name = name.trim();
         let chosen = document.scene.parts.iter().position(|part| part.name == name);

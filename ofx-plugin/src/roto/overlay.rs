@@ -4,7 +4,7 @@
 //! only the overlay changes. Everything the editor works on is read anew for each event, because the host may have undone a
 //! step or set a parameter in between.
 
-use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
+use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work, order};
 use super::parts::selected;
 use super::placement::Placement;
 use super::settings::{self, Settings};
@@ -57,7 +57,7 @@ impl Shown {
         let state = instance.state(&parameters).map_err(quiet)?;
         let settings = Settings::read(&parameters, view.time, &state)?;
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
-        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
+        order::sort_on(&document.scene, settings.frame(), &mut parts);
         let locked = |part: &usize| edits::is_locked(&parameters, &state, &document.scene.parts[*part].name);
         let unlocked = parts.iter().copied().filter(|part| !locked(part)).collect();
         let placement = Placement::of(&view.effect, &document.scene.footage, view.time, [1.0; 2])?;
