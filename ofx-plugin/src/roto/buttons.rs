@@ -4,7 +4,7 @@
 
 use super::state::{FileMark, State};
 use super::track::BUSY;
-use super::{choosing, edits, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
+use super::{choosing, edits, footage, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -16,7 +16,6 @@ use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::pipeline::unchanged::Mark;
 use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
-use rototoon::project::path::slashed;
 use std::path::{Path, PathBuf};
 
 /// Most warnings of an import that are shown.
@@ -145,13 +144,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     // The mark comes first: what is written in between counts as a change.
     let mark = Mark::of(&path).map_or_else(String::new, |mark| mark.to_string());
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
-    let folder = folder(&path);
-    let pattern = &mut document.scene.footage.pattern;
-    if Path::new(pattern.as_str()).is_relative()
-        && let Some(folder) = folder.to_str()
-    {
-        *pattern = slashed(&Path::new(&folder.replace('%', "%%")).join(&*pattern));
-    }
+    footage::make_absolute(&mut document, &path);
     edits::store_loaded(effect, &document, &FileMark { path: path.to_string_lossy().into_owned(), mark })
 }
 
@@ -178,10 +171,4 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
         instance(effect)?.note(effect, warning, false);
     }
     Ok(())
-}
-
-/// The folder of a file.
-pub fn folder(path: &Path) -> PathBuf {
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    whole.parent().map_or_else(PathBuf::new, Path::to_path_buf)
 }

@@ -6,12 +6,13 @@ use super::parts::selected;
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
-use super::{follow, fresh, instance, listing, marks, page, stored};
+use super::{follow, footage, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::{FrameNumber, NoSuchPart, Part};
 use std::ffi::CStr;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The parameters that name parts in lists.
@@ -47,8 +48,9 @@ fn store_from(
         return Err(Failure::Told(problems.to_string()));
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let before = instance.document_of_text(&parameters)?;
-    let shown = if before.is_some() { None } else { instance.shown_file(&parameters)? };
+    let shown = adopted(effect, &mut document)?;
+    let before =
+        if shown.is_some() { instance.document(&parameters)? } else { instance.document_of_text(&parameters)? };
     let edited = |state: &mut State, document: &Document| {
         shown.iter().for_each(|file| state.note_file(file));
         if let Some(path) = path {
@@ -78,14 +80,24 @@ fn store_from(
     write(effect, label, &document, state, &page)
 }
 
+/// The file that is only shown so far, if this document of it is to be the composition's own. The composition has no folder,
+/// so the footage gets an absolute path.
+fn adopted(effect: &Effect, document: &mut Document) -> Result<Option<FileMark>, Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    if instance.document_of_text(&parameters)?.is_some() {
+        return Ok(None);
+    }
+    let file = instance.shown_file(&parameters)?;
+    file.iter().for_each(|file| footage::make_absolute(document, Path::new(&file.path)));
+    Ok(file)
+}
+
 /// Stores a tracked document. `before` are its parts before that.
-pub fn store_tracked(effect: &Effect, before: &[Part], tracked: &Tracked) -> Result<(), Failure> {
+pub fn store_tracked(effect: &Effect, before: &[Part], mut tracked: Tracked) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
-    if instance.document_of_text(&parameters)?.is_none() {
-        instance.shown_file(&parameters)?.iter().for_each(|file| state.note_file(file));
-    }
-    state.note_tracked_spans(before, tracked);
+    adopted(effect, &mut tracked.document)?.iter().for_each(|file| state.note_file(file));
+    state.note_tracked_spans(before, &tracked);
     let page = state.page.clone();
     write(effect, "Track", &tracked.document, state, &page)
 }
@@ -258,6 +270,7 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
     let mut state = State::clone(&*instance.state(&parameters)?);
     // Keys that the user has moved in the host's own editor are on the page only.
     page::stored(&parameters, &mut state)?;
+    adopted(effect, &mut document)?.iter().for_each(|file| state.note_file(file));
     let page = state.page.clone();
     state.rename(&old, new);
     parameters.edit("Rename part", || {

@@ -104,7 +104,7 @@ impl Instance {
     pub fn shown_file(&self, parameters: &Parameters) -> Result<Option<FileMark>, Failure> {
         let project = parameters.text(c"project")?;
         Ok(match lock(&self.read).as_ref() {
-            Some(Read { origin: Origin::File(path, _), mark: Some(mark), .. }) if *path == project => {
+            Some(Read { origin: Origin::File(path, _), mark: Some(mark), result: Ok(_) }) if *path == project => {
                 Some(FileMark { path: project, mark: mark.to_string() })
             }
             _ => None,

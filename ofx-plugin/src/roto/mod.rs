@@ -20,7 +20,8 @@
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
 //! - [`listing`]: the list of the parts; [`choosing`]: selects a part from it
-//! - [`buttons`]: the buttons; [`saving`]: *Save*, which writes over nothing that another program wrote
+//! - [`buttons`]: the buttons; [`saving`]: *Save*, which writes over nothing that another program wrote; [`footage`]: the path of the
+//!   footage in files and in the composition
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
@@ -40,6 +41,7 @@ pub mod edits;
 pub mod fetching;
 pub mod film;
 pub mod follow;
+pub mod footage;
 pub mod fresh;
 pub mod id_files;
 pub mod instance;

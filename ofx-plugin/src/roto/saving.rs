@@ -8,14 +8,14 @@
 //! Limits: a file from which no shapes were taken is replaced, because the user chose its name. Compositions of earlier versions have no marks until they load
 //! or save. Hosts that do not know parameters without undo make a step of *Save*.
 
-use super::buttons::{chosen, folder, foreign};
+use super::buttons::{chosen, foreign};
 use super::instance::{NO_SHAPES, ORIGIN};
 use super::state::FileMark;
-use super::{instance, stored};
+use super::{footage, instance, stored};
 use crate::ofx::{Effect, Failure};
 use rototoon::pipeline::unchanged::{self, Mark};
 use rototoon::project::Document;
-use rototoon::project::path::{real, slashed};
+use rototoon::project::path::real;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -70,13 +70,7 @@ fn document(text: &str, path: &Path) -> Result<Document, Failure> {
     }
     let json = stored::decode(text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;
     let mut document = Document::parse(&json, ORIGIN).map_err(|error| Failure::Told(error.to_string()))?;
-    let folder = folder(path);
-    let pattern = &mut document.scene.footage.pattern;
-    if let Some(folder) = folder.to_str()
-        && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
-    {
-        *pattern = slashed(relative);
-    }
+    footage::make_relative(&mut document, path);
     Ok(document)
 }
 

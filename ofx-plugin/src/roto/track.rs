@@ -34,5 +34,5 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let tracked = job.merged(&document, tracking)?;
     instance.replace_stale(&document.scene.parts, &tracked);
-    edits::store_tracked(effect, &document.scene.parts, &tracked)
+    edits::store_tracked(effect, &document.scene.parts, tracked)
 }

@@ -55,6 +55,26 @@ fn shapes_that_redo_brings_back_do_not_take_a_newer_file_for_theirs() {
 }
 
 #[test]
+fn the_first_edit_of_a_file_that_is_only_shown_takes_its_state_and_its_footage() {
+    let (host, folder) = (host(), tempfile::tempdir().unwrap());
+    let file = project(folder.path());
+    let mut effect = shows(&host, &file);
+    assert_eq!((effect.press("nextPart"), effect.press("farther")), (OK.into(), OK.into()), "{:?}", host.messages());
+    assert_eq!(effect.overlay("OfxInteractActionDraw", true, 1.0, [0.0; 2], 0.1), OK);
+    assert!(effect.texts().iter().any(|text| text.contains("track again")), "{:?}", effect.texts());
+    let footage = folder.path().join("f_%d.png").to_str().unwrap().to_owned();
+    assert_eq!(kept(&effect).scene.footage.pattern, footage);
+    // A file in another folder finds the footage, and one beside it names it as before.
+    let elsewhere = tempfile::tempdir().unwrap();
+    for (path, wanted) in [(elsewhere.path().join("a.json"), footage.as_str()), (file, "f_%d.png")] {
+        effect.set_text("project", path.to_str().unwrap());
+        assert_eq!(effect.press("save"), OK, "{:?}", host.messages());
+        assert_eq!(Document::load(&path).unwrap().scene.footage.pattern, wanted);
+    }
+    clean(&host);
+}
+
+#[test]
 fn a_composition_that_is_opened_again_knows_what_its_file_held() {
     let (host, folder) = (host(), tempfile::tempdir().unwrap());
     let file = project(folder.path());
