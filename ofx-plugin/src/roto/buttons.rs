@@ -86,7 +86,7 @@ fn used(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
         "rename" => edits::rename(effect, time),
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, name, time),
         "frameOffset" => marks::moved(effect),
-        "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
+        "part" => edits::select(effect, &effect.parameters()?.text(c"part")?),
         "partList" => choosing::chosen(effect),
         "previousPart" | "nextPart" => choosing::step(effect, name == "nextPart"),
         "live" => {

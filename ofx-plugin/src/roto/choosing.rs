@@ -3,6 +3,7 @@
 use super::edit::Selection;
 use super::instance::NO_SHAPES;
 use super::listing::{MENU, names, refresh};
+use super::parts::meant;
 use super::{edits, instance};
 use crate::ofx::{Effect, Failure, Parameters};
 
@@ -27,7 +28,8 @@ pub fn step(effect: &Effect, forward: bool) -> Result<(), Failure> {
     let document = instance(effect)?.document(&parameters)?;
     let names = document.as_deref().map(|document| names(document)).unwrap_or_default();
     let part = parameters.text(c"part")?;
-    let place = names.iter().position(|name| *name == part.trim());
+    let part = document.as_ref().map_or("", |document| meant(&document.scene.parts, &part));
+    let place = names.iter().position(|name| *name == part);
     let next = match (place, forward) {
         (Some(place), true) => names.get(place + 1).or(names.first()),
         (Some(place), false) => place.checked_sub(1).and_then(|before| names.get(before)).or(names.last()),

@@ -2,7 +2,7 @@
 
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::job::Tracked;
-use super::parts::selected;
+use super::parts::{meant, selected};
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
@@ -141,6 +141,7 @@ fn put(parameters: &Parameters, document: &Document, state: State, page: &str) -
 pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
+    let name = document.as_ref().map_or(name.trim(), |all| meant(&all.scene.parts, name));
     let known = document.as_ref().is_some_and(|all| all.scene.parts.iter().any(|part| part.name == name));
     let mut state = State::clone(&*instance.state(&parameters)?);
     parameters.edit("Select part", || {
@@ -192,8 +193,8 @@ impl Bench {
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
         parts.retain(|&part| !is_locked(&parameters, &state, &document.scene.parts[part].name));
         order::sort_on(&document.scene, frame, &mut parts);
-        let name = parameters.text(c"part")?;
-        let name = name.trim();
+        let text = parameters.text(c"part")?;
+        let name = meant(&document.scene.parts, &text);
         let chosen = document.scene.parts.iter().position(|part| part.name == name);
         if !name.is_empty() && chosen.is_none() {
             return Err(Failure::Told(format!("Part: {}", NoSuchPart::of(&document.scene.parts, name))));

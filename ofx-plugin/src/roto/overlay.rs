@@ -5,7 +5,7 @@
 //! step or set a parameter in between.
 
 use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work, order};
-use super::parts::selected;
+use super::parts::{meant, selected};
 use super::placement::Placement;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
@@ -66,7 +66,7 @@ impl Shown {
             Lens::new(Point::new((size(Point::X) - size(Point::ZERO)).x, (size(Point::Y) - size(Point::ZERO)).y));
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
-        let (name, stale) = (name.trim().into(), instance.stale());
+        let (name, stale) = (meant(&document.scene.parts, &name).into(), instance.stale());
         let colours = settings::colours(&parameters, &state)?;
         Ok(Self { document, parts, unlocked, settings, state, stale, colours, placement, lens, tool, closed, name })
     }
