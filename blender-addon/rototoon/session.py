@@ -137,10 +137,11 @@ class Session:
     def set_fills(self, clicks: Iterable[Click]) -> None:
         """Replaces the clicks of the painter. Those of a frame keep their order. Painted regions stay until the next `fill`."""
         clicks = list(clicks)
-        if any(isinstance(click, Click) and click.name is not None for click in clicks):
+        frames, places, colours = flat(clicks)
+        clicks = fills.read(clicks)
+        if any(click.name is not None for click in clicks):
             self._handle.call("rototoon_session_set_fills_json", *text(fills.as_json(clicks)))
             return
-        frames, places, colours = flat(clicks)
         arrays = buffer(frames, "i")[0], buffer(places, "d")[0], buffer(colours, "d")[0]
         self._handle.call("rototoon_session_set_fills", *arrays, len(frames))
 
