@@ -154,6 +154,8 @@ def told(run: Run, strokes: int, reset: bool = False) -> str:
         drawn = np.asarray(run.entry.session.tracks(part["name"]).frames).astype(int)
         frames.update(set(drawn.tolist()) - {int(frame) for frame in part["keys"]})
     text = f"{counted(strokes, 'contour')} drawn on {counted(len(frames), 'frame')}"
+    if run.worker.result.footage_changed:
+        return text + "; the pictures have changed and were read again"
     return text if run.worker.result.solved or not strokes or reset else "Nothing to track again: " + text
 
 

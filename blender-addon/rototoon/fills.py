@@ -182,9 +182,26 @@ def as_json(clicks: Iterable[Click]) -> str:
     """Clicks in the form of a document."""
     found: dict[int, list[dict[str, Any]]] = {}
     for click in clicks:
-        own: dict[str, Any] = {"at": list(click.at), "colour": None if click.colour is None else list(click.colour)}
-        found.setdefault(click.frame, []).append(own | ({} if click.name is None else {"name": click.name}))
+        own: dict[str, Any] = {"at": [float(value) for value in click.at]}
+        own["colour"] = None if click.colour is None else [float(value) for value in click.colour]
+        found.setdefault(int(click.frame), []).append(own | ({} if click.name is None else {"name": click.name}))
     return json.dumps([{"frame": frame, "regions": found[frame]} for frame in sorted(found)])
+
+
+def read(clicks: Iterable[Click]) -> list[Click]:
+    """The clicks, of which each may be a plain tuple."""
+    found = []
+    for k, click in enumerate(clicks):
+        try:
+            found.append(click if isinstance(click, Click) else Click(*click))
+        except TypeError as error:
+            raise _wrong(k, click) from error
+    return found
+
+
+def _wrong(k: int, click: object) -> RototoonError:
+    expected = "a frame, a place (x, y) and a colour (r, g, b), or None for no paint"
+    return RototoonError(f"clicks[{k}]: found {click!r}, expected {expected}")
 
 
 def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float], array.array[float]]:
@@ -198,8 +215,7 @@ def flat(clicks: Iterable[Click]) -> tuple[array.array[int], array.array[float],
             places.extend((x, y))
             colours.extend((red, green, blue))
         except (TypeError, ValueError, OverflowError) as error:
-            expected = "a frame, a place (x, y) and a colour (r, g, b), or None for no paint"
-            raise RototoonError(f"clicks[{k}]: found {click!r}, expected {expected}") from error
+            raise _wrong(k, click) from error
     return frames, places, colours
 
 

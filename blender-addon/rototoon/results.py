@@ -67,6 +67,8 @@ class Summary:
     """Parts that may have changed places, in the document's order."""
     unseen: list[Unseen]
     """Parts that can probably not be seen somewhere, in the document's order."""
+    footage_changed: bool
+    """Whether files of the footage have changed since the session read them. Then it has solved all spans anew that they concern."""
 
     @property
     def solved(self) -> int:

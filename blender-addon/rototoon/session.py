@@ -137,10 +137,11 @@ class Session:
     def set_fills(self, clicks: Iterable[Click]) -> None:
         """Replaces the clicks of the painter. Those of a frame keep their order. Painted regions stay until the next `fill`."""
         clicks = list(clicks)
-        if any(isinstance(click, Click) and click.name is not None for click in clicks):
+        frames, places, colours = flat(clicks)
+        clicks = fills.read(clicks)
+        if any(click.name is not None for click in clicks):
             self._handle.call("rototoon_session_set_fills_json", *text(fills.as_json(clicks)))
             return
-        frames, places, colours = flat(clicks)
         arrays = buffer(frames, "i")[0], buffer(places, "d")[0], buffer(colours, "d")[0]
         self._handle.call("rototoon_session_set_fills", *arrays, len(frames))
 
@@ -162,7 +163,8 @@ class Session:
         `Summary.exchanges` are parts that look alike and may have changed places, `Summary.unseen` parts that something hides: ``absent`` of the document says
         that they have no contour there.
 
-        Spans that have not changed since this session last solved them are not solved again. Snapped curves of frames whose
+        Spans that have not changed since this session last solved them are not solved again. If files of the footage have changed since the session read them,
+        it reads them anew, and `Summary.footage_changed` says so. Snapped curves of frames whose
         track changed are removed. `preset` is ``rototoon``, ``zhou2011``, ``agarwala2004`` or ``liang2012``. `threads` is the
         number of threads, 0 for one per core; it does not change the result. Raises `Cancelled`; the document is unchanged then.
         """
@@ -170,7 +172,8 @@ class Session:
         summary = self._long("rototoon_session_track", options, progress)
         exchanges = [Exchange((*found["parts"],), found["frames"]) for found in summary["exchanges"]]
         unseen = [Unseen(**found) for found in summary["unseen"]]
-        return Summary([Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]], exchanges, unseen)
+        jobs, ends = [Job(**job) for job in summary["jobs"]], [End(**end) for end in summary["ends"]]
+        return Summary(jobs, ends, exchanges, unseen, summary["footage_changed"])
 
     def snap(self, progress: Progress | None = None, *, threads: int = 0, **options: Any) -> None:
         """Lays the tracked contours along the drawn ink and stores ``curves`` in the document.

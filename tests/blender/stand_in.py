@@ -17,6 +17,7 @@ class Summary:
     ends: list = field(default_factory=list)
     exchanges: list = field(default_factory=list)
     unseen: list = field(default_factory=list)
+    footage_changed: bool = False
 
 
 @dataclass

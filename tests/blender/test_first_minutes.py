@@ -165,9 +165,12 @@ def test_track_tells_where_to_look(addon, fake, tmp_path):
     entry = addon("capture.sessions").known(ob)
     sure = entry.session.confidence
     entry.session.confidence = lambda name: np.where(np.arange(9)[:, None] == 4, 0.1, sure(name))
-    summary = SimpleNamespace(ends=[], solved=2)
+    summary = SimpleNamespace(ends=[], solved=2, footage_changed=False)
     run = SimpleNamespace(entry=entry, inputs=entry.inputs, moved={}, worker=SimpleNamespace(result=summary))
     assert tracking.told(run, 14) == "14 contours drawn on 7 frames"
+    changed = SimpleNamespace(ends=[], solved=0, footage_changed=True)
+    again = SimpleNamespace(entry=entry, inputs=entry.inputs, moved={}, worker=SimpleNamespace(result=changed))
+    assert tracking.told(again, 14) == "14 contours drawn on 7 frames; the pictures have changed and were read again"
     assert tracking.where_to_look(ob, run) == '"Part 1" is most likely off on 5; "Part 2" is most likely off on 5'
     assert addon("common.wording").listed([3, 4, 5, 9, 12, 13]) == "3 to 5, 9 and 12 and 13"
 

@@ -188,6 +188,17 @@ def test_colours_have_names(film):
         assert [click.name for click in session.fills()] == ["coat", "hair"]
 
 
+def test_plain_tuples_are_clicks_with_or_without_a_name(film):
+    coat = Click(0, (30.0, 30.0), RED, "coat")
+    with opened(film) as session:
+        for clicks in ([tuple(coat), (0, (60, 60), BLUE)], [coat, (numpy.int64(0), numpy.array([60, 60]), numpy.float32(BLUE))]):
+            session.set_fills(clicks)
+            assert session.fills() == [coat._replace(colour=pytest.approx(RED)), Click(0, (60.0, 60.0), pytest.approx(BLUE))]
+        for wrong in ((0, 1, 2, "coat"), (0, (1, 1), RED, "coat", "hair")):
+            with pytest.raises(RototoonError, match=r"clicks\[1\]: found \(0, .*expected a frame, a place"):
+                session.set_fills([coat, wrong])
+
+
 def test_a_colour_becomes_another_one(film):
     wet = fills.Recolour(fills.Hue(RED), fills.Hue(GREEN, "wet"), first=2)
     with opened(film) as session:

@@ -3,11 +3,12 @@
 import array
 import gc
 import json
+import math
 import os
 import threading
 
 import pytest
-from conftest import LAST, square, write_png
+from conftest import LAST, draw, square, write_png
 from rototoon import Cancelled, Exchange, RototoonError, Session, WeakestFrame, documents, match_contours, outcomes, parameters, version
 
 FRAMES = list(range(LAST + 1))
@@ -74,6 +75,34 @@ def test_another_session_takes_what_one_has_tracked(document, folder, tmp_path, 
     monkeypatch.setenv("ROTOTOON_CACHE", "none")
     with Session.from_document(document, folder) as session:
         assert session.track().solved == 4
+
+
+def test_footage_that_is_drawn_again_under_the_same_names_is_read_again(document, folder, tmp_path, monkeypatch):
+    """The square stands still at first, and then moves between its keys."""
+    monkeypatch.setenv("ROTOTOON_CACHE", "none")
+    parts = [document["parts"][0] | {"keys": {frame: square(0, 0) for frame in ("0", "12")}}]
+    still, drawn = draw(0), [draw(min(frame, LAST - frame)) for frame in FRAMES]
+    for frame in FRAMES:
+        write_png(tmp_path / f"frame_{frame:03}.png", still)
+    with Session.from_document(document | {"parts": parts}, tmp_path) as session:
+        assert not session.track().footage_changed
+        session.snap()
+        before = session.tracks("red").points.tolist()
+        for frame in FRAMES[1:-1]:
+            write_png(tmp_path / f"frame_{frame:03}.png", drawn[frame])
+        summary = session.track()
+        after = session.tracks("red").points.tolist()
+        assert (summary.footage_changed, summary.solved) == (True, 1)
+        assert (session.track().footage_changed, session.track().solved) == (False, 0)
+        snapped = []
+        for pictures in (drawn, [still] * len(FRAMES)):
+            for frame in FRAMES:
+                write_png(tmp_path / f"frame_{frame:03}.png", pictures[frame])
+            session.snap()
+            snapped.append([path.tolist() for path in session.curves("red", 3)])
+    assert snapped[0] != snapped[1]
+    for points, truth in ((before, square(0, 0)), (after, square(3, 0))):
+        assert all(math.dist(p, t) < 1.0 for p, t in zip(points[3], truth, strict=True))
 
 
 def test_set_document_keeps_what_is_known(session):

@@ -519,7 +519,7 @@ RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session
 //
 // `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
 // "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}],
-// "unseen": [{"part", "frames": [frame]}]}`.
+// "unseen": [{"part", "frames": [frame]}], "footage_changed"}`.
 //
 // - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 //   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
@@ -530,6 +530,7 @@ RototoonStatus rototoon_session_set_absent(const struct RototoonSession *session
 //   `rototoon_outcomes` has words for it.
 // - `unseen` has an entry for each part that can probably not be seen on some frames, because nearer parts or the picture's edge hide it. Only a person
 //   knows; the document's `absent` says so.
+// - `footage_changed` is true if files of the footage have changed since this session read them. Then no span was reused that was solved with the old ones.
 RototoonStatus rototoon_session_track(const struct RototoonSession *session,
                                       const uint8_t *options,
                                       size_t options_length,

@@ -45,6 +45,7 @@ struct Summary<'a> {
     ends: Vec<EndSummary<'a>>,
     exchanges: Vec<ExchangeSummary<'a>>,
     unseen: Vec<UnseenSummary<'a>>,
+    footage_changed: bool,
 }
 
 #[derive(Debug, Serialize)]
@@ -126,7 +127,8 @@ impl Session {
 
     fn put(&mut self, document: Document) {
         if document.scene.footage != self.document.scene.footage {
-            self.pictures = None;
+            // Without the pictures nobody knows whether the files are still those that the spans were solved with.
+            self.forget();
         }
         self.document = document;
     }
@@ -202,6 +204,7 @@ impl Session {
     pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Track)?;
         let (preset, id) = preset(options.choice("preset"))?;
+        let footage_changed = self.forget_old_pictures();
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
         pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = pipeline::in_effect(&self.document.scene);
@@ -214,13 +217,14 @@ impl Session {
             })
         })?;
         pipeline::store(&mut self.document.scene, &tracking);
-        Ok(summary(&self.document.scene, &tracking))
+        Ok(summary(&self.document.scene, &tracking, footage_changed))
     }
 
     /// Snaps the contours to the ink. Returns a summary as JSON.
     pub fn snap(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Snap)?;
         let snapping = snap_options(&options)?;
+        self.forget_old_pictures();
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
         pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = &self.document.scene;
@@ -332,6 +336,15 @@ impl Session {
         Ok(report)
     }
 
+    /// Drops pictures and solved spans if files of the footage have changed since they were read. Returns whether they have.
+    fn forget_old_pictures(&mut self) -> bool {
+        let changed = self.pictures.as_ref().is_some_and(Sequence::has_changed);
+        if changed {
+            self.forget();
+        }
+        changed
+    }
+
     /// Drops pictures and solved spans. After a panic they may be half-written.
     pub fn forget(&mut self) {
         self.pictures = None;
@@ -381,8 +394,8 @@ fn preset(id: &str) -> Result<(Preset, &'static str), Failure> {
     })
 }
 
-/// The summary of what was tracked and stored in the scene.
-fn summary(scene: &Scene, tracking: &Tracking) -> String {
+/// The summary of what was tracked and stored in the scene. `footage_changed` says whether all was tracked anew because files of the footage have changed.
+fn summary(scene: &Scene, tracking: &Tracking, footage_changed: bool) -> String {
     let jobs = tracking.jobs.iter().map(|job| JobSummary {
         part: &scene.parts[job.part].name,
         first: job.span.first,
@@ -401,8 +414,8 @@ fn summary(scene: &Scene, tracking: &Tracking) -> String {
         parts: found.parts.map(|part| scene.parts[part].name.as_str()),
         frames: &found.frames,
     });
-    json!(Summary { jobs: jobs.collect(), ends: ends.collect(), exchanges: exchanges.collect(), unseen: unseen(scene) })
-        .to_string()
+    let (jobs, ends, exchanges) = (jobs.collect(), ends.collect(), exchanges.collect());
+    json!(Summary { jobs, ends, exchanges, unseen: unseen(scene), footage_changed }).to_string()
 }
 
 /// The parts that can probably not be seen on some frames.
@@ -435,9 +448,9 @@ mod tests {
         scene.parts = ["near leg", "head", "far leg"].map(part).into();
         let tracking =
             Tracking { exchanges: vec![Exchange { parts: [0, 2], frames: vec![3, 4, 7] }], ..Tracking::default() };
-        let summary: Value = serde_json::from_str(&summary(&scene, &tracking)).unwrap();
+        let summary: Value = serde_json::from_str(&summary(&scene, &tracking, true)).unwrap();
         assert_eq!(summary["exchanges"], json!([{"parts": ["near leg", "far leg"], "frames": [3, 4, 7]}]));
-        assert_eq!(summary["unseen"], json!([]));
+        assert_eq!((&summary["unseen"], &summary["footage_changed"]), (&json!([]), &json!(true)));
     }
 
     #[test]
@@ -450,7 +463,7 @@ mod tests {
         };
         let mut scene = empty_scene();
         scene.parts = vec![part("hand", 6.0, 0.0), part("coat", 30.0, 1.0)];
-        let summary: Value = serde_json::from_str(&summary(&scene, &Tracking::default())).unwrap();
+        let summary: Value = serde_json::from_str(&summary(&scene, &Tracking::default(), false)).unwrap();
         assert_eq!(summary["unseen"], json!([{"part": "hand", "frames": [3]}]));
     }
 

@@ -21,7 +21,7 @@ use std::ptr::null_mut;
 ///
 /// `summary` is JSON: `{"jobs": [{"part", "first", "last", "solved", "termination", "iterations", "initial_cost",
 /// "final_cost"}], "ends": [{"part", "frame", "reason"}], "exchanges": [{"parts": [name, name], "frames": [frame]}],
-/// "unseen": [{"part", "frames": [frame]}]}`.
+/// "unseen": [{"part", "frames": [frame]}], "footage_changed"}`.
 ///
 /// - `jobs` has one entry for each part and span. `solved` is false if the span was reused. `termination` is one of
 ///   nothing_to_solve, cost_converged, step_converged, no_descent, iteration_limit, path_chosen.
@@ -32,6 +32,7 @@ use std::ptr::null_mut;
 ///   `rototoon_outcomes` has words for it.
 /// - `unseen` has an entry for each part that can probably not be seen on some frames, because nearer parts or the picture's edge hide it. Only a person
 ///   knows; the document's `absent` says so.
+/// - `footage_changed` is true if files of the footage have changed since this session read them. Then no span was reused that was solved with the old ones.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rototoon_session_track(
     session: *const RototoonSession,

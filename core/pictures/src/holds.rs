@@ -34,6 +34,12 @@ impl Holds {
         found
     }
 
+    /// Whether a frame that held the drawing before it has a file now.
+    pub fn has_changed(&self, there: impl Fn(FrameNumber) -> bool) -> bool {
+        let known = self.locked().clone();
+        known.into_iter().any(|(frame, shown)| frame != shown && there(frame))
+    }
+
     /// Forgets everything, because files may have changed.
     pub fn forget(&self) {
         self.locked().clear();

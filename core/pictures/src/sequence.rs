@@ -114,6 +114,14 @@ impl Sequence {
         Some((data.len(), data.modified().ok()?))
     }
 
+    /// Whether a file has changed since it was read for the first time, or a frame that was held has one now. Then what is kept here, and what others have
+    /// computed of it, may be of old pictures.
+    pub fn has_changed(&self) -> bool {
+        let stamps = self.locked().stamps.clone();
+        stamps.iter().any(|(&frame, stamp)| *stamp != self.stamp(frame))
+            || self.holds.has_changed(|frame| is_there(&self.own(frame)))
+    }
+
     /// Empties the cache, because files may have changed.
     pub fn forget(&self) {
         let mut kept = self.locked();
@@ -349,11 +357,14 @@ mod tests {
         let mark = |frame| sequence.mark(frame).unwrap();
         let path = |frame| folder.path().join(format!("f{frame:03}.png"));
         assert!(mark(1).is_some() && mark(1) == mark(1) && mark(1) != mark(2));
+        assert!(!sequence.has_changed());
         assert_eq!(mark(1), Some(super::mark(&sequence.picture(1).unwrap())));
         // The picture that was read may still be in use.
         std::fs::copy(path(3), path(1)).unwrap();
         assert_eq!(mark(1), None);
+        assert!(sequence.has_changed());
         sequence.forget();
+        assert!(!sequence.has_changed(), "nothing is kept");
         assert_eq!((mark(1), mark(2).is_some()), (mark(3), true));
         // So may one that was read before anybody asked for its mark.
         sequence.picture(6).unwrap();
@@ -416,8 +427,10 @@ mod tests {
         assert_eq!((sequence.path(4), sequence.shown(4), sequence.probe(4)), (at(2), 2, Ok(())));
         assert!(sequence.layer(4).unwrap() == sequence.layer(2).unwrap());
         assert_eq!(sequence.picture(1), Err(FrameError::Missing { frame: 1, path: at(1) }));
+        assert!(!sequence.has_changed());
         std::fs::write(at(4), "text").unwrap();
         assert!(Arc::ptr_eq(&picture(4), &picture(2)), "found before it came");
+        assert!(sequence.has_changed());
         sequence.forget();
         assert!(matches!(sequence.picture(4), Err(FrameError::Unreadable { frame: 4, path, .. }) if path == at(4)));
         let open = Sequence::new(&footage, folder.path()).unwrap();

@@ -56,7 +56,7 @@ fn soft_layers(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool
     let mut order: Vec<&Part> =
         scene.parts.iter().enumerate().filter(|(k, _)| wanted(*k)).map(|(_, part)| part).collect();
     order.retain(|part| part.closed && part.points_at(frame).is_some());
-    order.sort_by(|a, b| a.depth.total_cmp(&b.depth));
+    order.sort_by(|a, b| a.depth_at(frame).total_cmp(&b.depth_at(frame)));
     let layer = |parts: &[&Part]| {
         let outlines: Vec<Vec<Point>> = parts.iter().filter_map(|part| part.outline(frame)).collect();
         let pieces = feather_pieces(parts[0], f64::from(frame), true, &|p| p, 1.0);

@@ -58,7 +58,8 @@ pub fn segments_at(part: &Part, time: f64, curves: bool) -> Option<Vec<Vec<Point
     if curves {
         let still = (time - time.round()).abs() < SAME_FRAME;
         let (before, after) = (frame(time.floor())?, frame(time.floor())? + 1);
-        let moving = !still && part.points_at(before).is_some() && part.points_at(after).is_some();
+        let count = |frame| part.points_at(frame).map(Vec::len);
+        let moving = !still && count(before).is_some() && count(before) == count(after);
         let paths = if moving {
             paths_between(part, before, &points, time - time.floor())
         } else {
@@ -94,12 +95,14 @@ fn between(part: &Part, first: FrameNumber, before: &[Point], after: &[Point], s
 }
 
 /// The snapped paths of the neighbouring frames, carried to the segments between `points`. `None` if neither frame has
-/// them.
+/// them. Paths of a contour with another number of points are left out.
 fn paths_between(part: &Part, first: FrameNumber, points: &[Point], share: f64) -> Option<Vec<Vec<Point>>> {
     let sides = [(first, 1.0 - share), (first + 1, share)];
+    let segments = polyline::segments(points, part.closed).count();
     let known: Vec<_> = sides
         .iter()
         .filter_map(|&(frame, weight)| Some((part.points_at(frame)?, part.complete_curves(frame)?, weight)))
+        .filter(|(own, paths, _)| own.len() == points.len() && paths.len() == segments)
         .collect();
     let total: f64 = known.iter().map(|(_, _, weight)| weight).sum();
     let mut result: Vec<Vec<Point>> = Vec::new();
@@ -195,6 +198,27 @@ mod tests {
             }
         }
         assert_eq!(segments_at(&part, 9.0, true), None);
+    }
+
+    #[test]
+    fn contours_with_other_numbers_of_points_keep_to_the_nearest_frame() {
+        let mut part = arm(4);
+        // A track may have another number of points than the keys, with as many paths as they have.
+        part.tracks.insert(2, vec![Point::new(1.0, 0.0), Point::new(2.0, 1.0)]);
+        part.keys.remove(&2);
+        for time in [1.25, 1.75, 2.0, 2.25, 2.75] {
+            for curves in [false, true] {
+                let segments = segments_at(&part, time, curves).unwrap();
+                let outline = outline_at(&part, time, curves).unwrap();
+                assert!(!outline.is_empty() && segments.iter().flatten().all(|p| p.is_finite()), "{time} {curves}");
+                let nearest = part.points_at(time.round() as FrameNumber).unwrap();
+                assert_eq!(segments.iter().map(|path| path[0]).collect::<Vec<_>>(), *nearest, "{time} {curves}");
+            }
+        }
+        part.tracks.insert(3, vec![Point::new(1.0, 0.0), Point::new(2.0, 1.0)]);
+        part.keys.remove(&3);
+        assert_eq!(segments_at(&part, 2.5, true).unwrap().len(), 2);
+        assert_eq!(outline_at(&part, 2.5, true).unwrap().len(), 2);
     }
 
     #[test]

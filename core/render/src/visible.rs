@@ -11,8 +11,6 @@
 //! cover, not with pixels times parts, and not with the number of parts that lie behind each other.
 //!
 //! Pictures are computed in bands of rows, and each part within its own bounds.
-//!
-//! Limits: the order follows `depth` of a part, not its depths on single frames.
 
 use super::coverage::{Shape, Window};
 use rototoon_base::geometry::Point;
@@ -122,18 +120,19 @@ impl Stack {
 /// The visible areas of closed parts on a frame. `parts` selects parts by index; `None` takes all. Snapped paths are
 /// used where they exist.
 pub fn visible(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Visible {
-    let order = nearest_first(scene, parts);
+    let order = nearest_first(scene, frame, parts);
     let stack = Stack::new(order.into_iter().filter_map(|part| Some((part, scene.parts[part].outline(frame)?))));
     Visible::in_bands(scene.footage.width, scene.footage.height, |band| {
         stack.shares(band, &mut || true).unwrap_or_default()
     })
 }
 
-/// The indices of closed parts, nearest first. `parts` selects parts by index; `None` takes all.
-pub fn nearest_first(scene: &Scene, parts: Option<&[usize]>) -> Vec<usize> {
+/// The indices of closed parts, the nearest on a frame first. `parts` selects parts by index; `None` takes all.
+pub fn nearest_first(scene: &Scene, frame: FrameNumber, parts: Option<&[usize]>) -> Vec<usize> {
+    let depth = |part: usize| scene.parts[part].depth_at(frame);
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.retain(|index| scene.parts[*index].closed && parts.is_none_or(|parts| parts.contains(index)));
-    order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
+    order.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)).then(b.cmp(&a)));
     order
 }
 
@@ -289,6 +288,17 @@ mod tests {
         scene.parts[1].closed = false;
         assert_eq!(share(&visible(&scene, 0, None), 0, 1, 1), 1.0);
         assert_eq!(visible(&scene, 3, None).most(), 0);
+    }
+
+    #[test]
+    fn a_part_with_a_depth_of_its_own_on_a_frame_lies_there() {
+        let mut scene = scene(vec![(2.0, rectangle(0.0, 0.0, 4.0, 4.0)), (1.0, rectangle(0.0, 0.0, 8.0, 8.0))]);
+        for part in &mut scene.parts {
+            part.keys.insert(1, part.keys[&0].clone());
+        }
+        scene.parts[0].depths = [(1, 0.5)].into();
+        assert_eq!([0, 1].map(|frame| share(&visible(&scene, frame, None), 0, 1, 1)), [1.0, 0.0]);
+        assert_eq!([0, 1].map(|frame| nearest_first(&scene, frame, None)[0]), [0, 1]);
     }
 
     proptest! {

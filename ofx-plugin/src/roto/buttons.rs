@@ -2,9 +2,9 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
-use super::state::FileMark;
+use super::state::{FileMark, State};
 use super::track::BUSY;
-use super::{choosing, edits, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
+use super::{choosing, edits, footage, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
 use crate::description::SOURCE;
 use crate::ofx::entry::Action;
 use crate::ofx::{Effect, Failure};
@@ -16,7 +16,6 @@ use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
 use rototoon::pipeline::unchanged::Mark;
 use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
-use rototoon::project::path::slashed;
 use std::path::{Path, PathBuf};
 
 /// Most warnings of an import that are shown.
@@ -87,7 +86,7 @@ fn used(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
         "rename" => edits::rename(effect, time),
         "previousLost" | "nextLost" | "weakest" => visits::go(effect, name, time),
         "frameOffset" => marks::moved(effect),
-        "part" => edits::select(effect, effect.parameters()?.text(c"part")?.trim()),
+        "part" => edits::select(effect, &effect.parameters()?.text(c"part")?),
         "partList" => choosing::chosen(effect),
         "previousPart" | "nextPart" => choosing::step(effect, name == "nextPart"),
         "live" => {
@@ -109,12 +108,19 @@ fn path(effect: &Effect) -> Result<PathBuf, Failure> {
     Ok(PathBuf::from(effect.parameters()?.text(c"project")?.trim()))
 }
 
-/// Whether Project names a file other than the one whose shapes the composition has.
+/// Whether Project names a file of which the composition has no shapes. Those that it has from a file, or has saved to one,
+/// may have been changed since; only *Load* replaces them by what the file holds.
 fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
     let (path, parameters) = (path(effect)?, effect.parameters()?);
+    if !path.is_file() || saving::has_saved(effect, &path)? {
+        return Ok(false);
+    }
+    let is_known = |state: &State| {
+        let read = state.read.as_ref().map(|file| file.path.as_str());
+        [Some(state.loaded.as_str()), read].into_iter().flatten().any(|known| saving::is_same(known, &path))
+    };
     let empty = parameters.text(c"document")?.trim().is_empty();
-    let loaded = instance(effect)?.state(&parameters).is_ok_and(|state| Path::new(&state.loaded) == path);
-    Ok(path.is_file() && (empty || !loaded))
+    Ok(empty || !instance(effect)?.state(&parameters).is_ok_and(|state| is_known(&state)))
 }
 
 /// The project's path, which the user must have chosen.
@@ -138,13 +144,7 @@ fn load(effect: &Effect) -> Result<(), Failure> {
     // The mark comes first: what is written in between counts as a change.
     let mark = Mark::of(&path).map_or_else(String::new, |mark| mark.to_string());
     let mut document = Document::load(&path).map_err(|error| Failure::Told(error.to_string()))?;
-    let folder = folder(&path);
-    let pattern = &mut document.scene.footage.pattern;
-    if Path::new(pattern.as_str()).is_relative()
-        && let Some(folder) = folder.to_str()
-    {
-        *pattern = slashed(&Path::new(&folder.replace('%', "%%")).join(&*pattern));
-    }
+    footage::make_absolute(&mut document, &path);
     edits::store_loaded(effect, &document, &FileMark { path: path.to_string_lossy().into_owned(), mark })
 }
 
@@ -171,10 +171,4 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
         instance(effect)?.note(effect, warning, false);
     }
     Ok(())
-}
-
-/// The folder of a file.
-pub fn folder(path: &Path) -> PathBuf {
-    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    whole.parent().map_or_else(PathBuf::new, Path::to_path_buf)
 }

@@ -3,6 +3,7 @@
 use super::edit::Selection;
 use super::instance::NO_SHAPES;
 use super::listing::{MENU, names, refresh};
+use super::parts::meant;
 use super::{edits, instance};
 use crate::ofx::{Effect, Failure, Parameters};
 
@@ -27,7 +28,8 @@ pub fn step(effect: &Effect, forward: bool) -> Result<(), Failure> {
     let document = instance(effect)?.document(&parameters)?;
     let names = document.as_deref().map(|document| names(document)).unwrap_or_default();
     let part = parameters.text(c"part")?;
-    let place = names.iter().position(|name| *name == part.trim());
+    let part = document.as_ref().map_or("", |document| meant(&document.scene.parts, &part));
+    let place = names.iter().position(|name| *name == part);
     let next = match (place, forward) {
         (Some(place), true) => names.get(place + 1).or(names.first()),
         (Some(place), false) => place.checked_sub(1).and_then(|before| names.get(before)).or(names.last()),
@@ -43,9 +45,11 @@ fn select(effect: &Effect, parameters: &Parameters, name: &str) -> Result<(), Fa
     let instance = instance(effect)?;
     let document = instance.document(parameters)?;
     let part = document.as_ref().and_then(|all| all.scene.parts.iter().position(|part| part.name == name));
-    instance.editor().selection = match (part, &document) {
-        (Some(part), Some(document)) => Selection::part(part, &document.scene),
-        _ => Selection::default(),
-    };
+    match (part, &document) {
+        (Some(part), Some(document)) => {
+            instance.editor().select(Selection::part(part, &document.scene), &document.scene);
+        }
+        _ => instance.editor().selection = Selection::default(),
+    }
     edits::select(effect, name)
 }

@@ -1,16 +1,18 @@
 //! Stores edits and selections in the host's parameters, each as one step of the host's undo.
 
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
-use super::parts::selected;
+use super::job::Tracked;
+use super::parts::{meant, selected};
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
-use super::{follow, fresh, instance, listing, marks, page, stored};
+use super::{follow, footage, fresh, instance, listing, marks, page, stored};
 use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::{FrameNumber, NoSuchPart};
+use rototoon::scene::{FrameNumber, NoSuchPart, Part};
 use std::ffi::CStr;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The parameters that name parts in lists.
@@ -46,8 +48,9 @@ fn store_from(
         return Err(Failure::Told(problems.to_string()));
     }
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
-    let before = instance.document_of_text(&parameters)?;
-    let shown = if before.is_some() { None } else { instance.shown_file(&parameters)? };
+    let shown = adopted(effect, &mut document)?;
+    let before =
+        if shown.is_some() { instance.document(&parameters)? } else { instance.document_of_text(&parameters)? };
     let edited = |state: &mut State, document: &Document| {
         shown.iter().for_each(|file| state.note_file(file));
         if let Some(path) = path {
@@ -55,6 +58,7 @@ fn store_from(
         }
         if let Some(before) = &before {
             state.note_known(&before.scene.parts);
+            state.note_changed(&before.scene.parts, &document.scene.parts, &document.scene.footage);
             state.note_order(&before.scene.parts, &document.scene.parts);
             let stale = instance.stale();
             state.note_stale(before.scene.parts.iter().filter(|part| stale.has(part)));
@@ -69,23 +73,33 @@ fn store_from(
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     edited(&mut state, &document);
-    if let Some((followed, tracked)) = followed {
-        state.note_tracked(tracked.iter().map(|&part| &followed.scene.parts[part]));
-        document = followed;
+    if let Some(followed) = followed {
+        state.note_tracked_spans(&document.scene.parts, &followed);
+        document = followed.document;
     }
     write(effect, label, &document, state, &page)
 }
 
-/// Stores a tracked document.
-pub fn store_tracked(effect: &Effect, document: &Document, tracked: &[usize]) -> Result<(), Failure> {
+/// The file that is only shown so far, if this document of it is to be the composition's own. The composition has no folder,
+/// so the footage gets an absolute path.
+fn adopted(effect: &Effect, document: &mut Document) -> Result<Option<FileMark>, Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    if instance.document_of_text(&parameters)?.is_some() {
+        return Ok(None);
+    }
+    let file = instance.shown_file(&parameters)?;
+    file.iter().for_each(|file| footage::make_absolute(document, Path::new(&file.path)));
+    Ok(file)
+}
+
+/// Stores a tracked document. `before` are its parts before that.
+pub fn store_tracked(effect: &Effect, before: &[Part], mut tracked: Tracked) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let mut state = State::clone(&*instance.state(&parameters)?);
-    if instance.document_of_text(&parameters)?.is_none() {
-        instance.shown_file(&parameters)?.iter().for_each(|file| state.note_file(file));
-    }
-    state.note_tracked(tracked.iter().map(|&part| &document.scene.parts[part]));
+    adopted(effect, &mut tracked.document)?.iter().for_each(|file| state.note_file(file));
+    state.note_tracked_spans(before, &tracked);
     let page = state.page.clone();
-    write(effect, "Track", document, state, &page)
+    write(effect, "Track", &tracked.document, state, &page)
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
@@ -94,6 +108,7 @@ pub fn store_loaded(effect: &Effect, document: &Document, file: &FileMark) -> Re
     let mut state = State::clone(&*instance.state(&parameters)?);
     let page = state.page.clone();
     state.tracked.clear();
+    state.changed.clear();
     state.note_file(file);
     state.keep_only(&document.scene.parts);
     write(effect, "Load project", document, state, &page)
@@ -126,6 +141,7 @@ fn put(parameters: &Parameters, document: &Document, state: State, page: &str) -
 pub fn select(effect: &Effect, name: &str) -> Result<(), Failure> {
     let (instance, parameters) = (instance(effect)?, effect.parameters()?);
     let document = instance.document(&parameters)?;
+    let name = document.as_ref().map_or(name.trim(), |all| meant(&all.scene.parts, name));
     let known = document.as_ref().is_some_and(|all| all.scene.parts.iter().any(|part| part.name == name));
     let mut state = State::clone(&*instance.state(&parameters)?);
     parameters.edit("Select part", || {
@@ -173,19 +189,18 @@ impl Bench {
         };
         let state = instance.state(&parameters)?;
         let settings = Settings::read(&parameters, time, &state)?;
-        let frame = settings.document_time.round() as FrameNumber;
+        let frame = settings.frame();
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
         parts.retain(|&part| !is_locked(&parameters, &state, &document.scene.parts[part].name));
-        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
-        let name = parameters.text(c"part")?;
-        let name = name.trim();
+        order::sort_on(&document.scene, frame, &mut parts);
+        let text = parameters.text(c"part")?;
+        let name = meant(&document.scene.parts, &text);
         let chosen = document.scene.parts.iter().position(|part| part.name == name);
         if !name.is_empty() && chosen.is_none() {
             return Err(Failure::Told(format!("Part: {}", NoSuchPart::of(&document.scene.parts, name))));
         }
         if let Some(part) = chosen.filter(|part| !parts.contains(part)) {
-            let name = &document.scene.parts[part].name;
-            return Err(Failure::Told(format!("{name:?} is locked or not among Parts")));
+            return Err(Failure::Told(Refused::protected(&document.scene.parts[part].name).0));
         }
         let place = usize::try_from(parameters.int(c"place", time)?).unwrap_or(1);
         Ok(Self { document, frame, parts, chosen, place })
@@ -224,6 +239,7 @@ pub fn press(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
     let width = effect.parameters()?.double(c"pointFeather", time)?;
     let outcome = {
         let mut editor = instance(effect)?.editor();
+        editor.follow(&bench.document.scene);
         match name {
             "insertPoints" => editor.insert_between(&work),
             "deletePoints" if editor.selection.is_empty() => refused("select points first"),
@@ -255,6 +271,7 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
     let mut state = State::clone(&*instance.state(&parameters)?);
     // Keys that the user has moved in the host's own editor are on the page only.
     page::stored(&parameters, &mut state)?;
+    adopted(effect, &mut document)?.iter().for_each(|file| state.note_file(file));
     let page = state.page.clone();
     state.rename(&old, new);
     parameters.edit("Rename part", || {
@@ -264,6 +281,7 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
         parameters.set_text(c"part", new)?;
         put(&parameters, &document, state, &page)
     })?;
+    instance.editor().rename(&old, new);
     listing::refresh(effect);
     Ok(())
 }

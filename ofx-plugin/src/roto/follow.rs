@@ -2,19 +2,18 @@
 
 use super::film::Film;
 use super::instance;
-use super::job::{Job, run};
+use super::job::{Job, Tracked, run};
 use crate::ofx::Effect;
 use crate::ofx::progress::Bar;
 use rototoon::project::Document;
 use std::sync::Arc;
 
 /// Tracks an edited document again without a call for images: the actions of the pen must not make one. Only the spans that
-/// the edit touches are tracked; the result is that of a complete Track. Returns the tracked document and the parts that were
-/// tracked.
+/// the edit touches are tracked; the result is that of a complete Track.
 ///
 /// `None` if *Live* is off, a frame is not in memory, the host has no progress display to cancel in, the user cancels, or the
 /// source has changed meanwhile. The tracks then stay old, and the overlay says so.
-pub fn follow(effect: &Effect, document: &Document, time: f64) -> Option<(Document, Vec<usize>)> {
+pub fn follow(effect: &Effect, document: &Document, time: f64) -> Option<Tracked> {
     let (instance, parameters) = (instance(effect).ok()?, effect.parameters().ok()?);
     if parameters.int(c"live", time).ok()? == 0 || !Bar::exists(effect) {
         return None;

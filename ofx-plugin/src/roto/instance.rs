@@ -2,6 +2,7 @@
 
 use super::edit::Editor;
 use super::film::Film;
+use super::job::Tracked;
 use super::shared::{self, Loaded};
 use super::stale::Stale;
 use super::state::{FileMark, State};
@@ -103,7 +104,7 @@ impl Instance {
     pub fn shown_file(&self, parameters: &Parameters) -> Result<Option<FileMark>, Failure> {
         let project = parameters.text(c"project")?;
         Ok(match lock(&self.read).as_ref() {
-            Some(Read { origin: Origin::File(path, _), mark: Some(mark), .. }) if *path == project => {
+            Some(Read { origin: Origin::File(path, _), mark: Some(mark), result: Ok(_) }) if *path == project => {
                 Some(FileMark { path: project, mark: mark.to_string() })
             }
             _ => None,
@@ -179,9 +180,19 @@ impl Instance {
         lock(&self.stale).clone()
     }
 
-    /// Notes that the tracks of these parts are made from the source as it is now.
-    pub fn forget_stale<'a>(&self, parts: impl IntoIterator<Item = &'a Part>) {
-        lock(&self.stale).remove(parts);
+    /// Notes that what was tracked is made from the source as it is now. `before` are the parts as they were. Other tracks
+    /// of a part may still be made from what the source was.
+    pub fn replace_stale(&self, before: &[Part], tracked: &Tracked) {
+        let mut stale = lock(&self.stale);
+        for &index in &tracked.parts {
+            let part = &tracked.document.scene.parts[index];
+            let is_whole = part.tracks.keys().all(|frame| tracked.has(&[*frame; 2]));
+            if !is_whole && stale.has(&before[index]) {
+                stale.add([part]);
+            } else {
+                stale.remove([part]);
+            }
+        }
     }
 
     /// Begins to track, or to follow an edit. `None` if the tracker is at work already.

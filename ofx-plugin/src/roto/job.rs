@@ -5,6 +5,7 @@
 
 use super::fetching::{Clerk, HostFrames};
 use super::film::{Kept, Terms};
+use super::spans::Span;
 use crate::description::SOURCE;
 use crate::ofx::progress::Bar;
 use crate::ofx::{Clip, Effect, Failure};
@@ -30,11 +31,33 @@ pub struct Job {
     /// The parts, with only the keys and corrections in the range.
     scene: Scene,
     range: RangeInclusive<FrameNumber>,
+    /// Whether the user has left out frames of the source.
+    is_limited: bool,
     offset: i32,
     options: TrackOptions,
     live: bool,
     /// Most bytes of frames that stay in memory.
     memory: f64,
+}
+
+/// What was tracked.
+#[derive(Clone, Debug)]
+pub struct Tracked {
+    /// The document with its new tracks.
+    pub document: Document,
+    /// The parts that were tracked.
+    pub parts: Vec<usize>,
+    /// The frames on which they were.
+    pub range: RangeInclusive<FrameNumber>,
+    /// Whether the user has left out frames of the source.
+    pub is_limited: bool,
+}
+
+impl Tracked {
+    /// Whether all frames of a span were tracked. The source may have fewer frames than the document.
+    pub fn has(&self, [first, last]: &Span) -> bool {
+        !self.is_limited || self.range.contains(first) && self.range.contains(last)
+    }
 }
 
 impl Job {
@@ -47,6 +70,7 @@ impl Job {
             clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
         let offset = parameters.int(c"frameOffset", time)?;
         let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
+        let is_limited = range(clip_range, chosen, offset) != range(clip_range, [0; 2], offset);
         let range = range(clip_range, chosen, offset);
         let scene = within(&document.scene, range.clone());
         if scene.parts.iter().all(|part| part.keys.is_empty()) {
@@ -59,7 +83,7 @@ impl Job {
         let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
         let live = parameters.int(c"live", time)? != 0;
         let memory = parameters.double(c"liveMemory", time)? * GIGABYTE;
-        Ok(Self { scene, range, offset, options, live, memory })
+        Ok(Self { scene, range, is_limited, offset, options, live, memory })
     }
 
     /// The circumstances.
@@ -85,16 +109,16 @@ impl Job {
         ((memory / self.bytes().max(1.0)) as usize).max(FEWEST)
     }
 
-    /// The document with its new tracks, and the parts that were tracked.
-    pub fn merged(&self, document: &Document, tracking: Tracking) -> Result<(Document, Vec<usize>), Failure> {
+    /// The document with its new tracks.
+    pub fn merged(&self, document: &Document, tracking: Tracking) -> Result<Tracked, Failure> {
         let mut document = document.clone();
         merge(&mut document.scene, tracking, &self.range);
         let problems = document.problems();
         if problems.error_count() > 0 {
             return Err(Failure::Told(problems.to_string()));
         }
-        let parts = &self.scene.parts;
-        Ok((document, (0..parts.len()).filter(|&part| !parts[part].keys.is_empty()).collect()))
+        let parts = (0..self.scene.parts.len()).filter(|&part| !self.scene.parts[part].keys.is_empty()).collect();
+        Ok(Tracked { document, parts, range: self.range.clone(), is_limited: self.is_limited })
     }
 }
 
@@ -118,8 +142,10 @@ fn within(scene: &Scene, range: RangeInclusive<FrameNumber>) -> Scene {
     pipeline::in_effect(&scene)
 }
 
-/// Stores new tracks in the scene. The scene keeps its tracks on frames outside the range.
+/// Stores new tracks in the scene. The scene keeps its tracks on frames outside the range, and the frames outside of it on which parts
+/// were lost.
 fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<FrameNumber>) {
+    let mut wanted: Vec<Vec<FrameNumber>> = Vec::new();
     for (part, found) in scene.parts.iter().zip(&mut tracking.parts) {
         // A part without keys in the range was not tracked.
         let untouched = found.tracks.is_empty();
@@ -129,8 +155,19 @@ fn merge(scene: &mut Scene, mut tracking: Tracking, range: &RangeInclusive<Frame
             .extend(part.tracks.iter().filter(|(frame, _)| kept(frame)).map(|(f, points)| (*f, points.clone())));
         let confidence = part.confidence.iter().filter(|(frame, _)| kept(frame));
         found.confidence.extend(confidence.map(|(frame, values)| (*frame, values.clone())));
+        wanted.push(part.wants_key.iter().copied().filter(kept).collect());
     }
     pipeline::store(scene, &tracking);
+    for (part, kept) in scene.parts.iter_mut().zip(wanted) {
+        // A part is lost once on a side of its keys. What was found now counts.
+        let is_new = |frame: &FrameNumber| {
+            let between = |other: &FrameNumber| *frame.min(other)..=*frame.max(other);
+            part.wants_key.iter().all(|other| part.keys.range(between(other)).next().is_some())
+        };
+        let kept: Vec<FrameNumber> = kept.into_iter().filter(is_new).collect();
+        part.wants_key.extend(kept);
+        part.wants_key.sort_unstable();
+    }
 }
 
 /// Runs a tracker. Frames that are not among the kept ones come from the source; without a source they are an error.
@@ -213,11 +250,37 @@ impl Progress for Board {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rototoon::geometry::Point;
+    use rototoon::scene::{Footage, Part};
+    use rototoon::track::{Ending, PartTrack, TrackEnd};
 
     #[test]
     fn the_range_is_in_the_clip_and_in_the_chosen_frames() {
         assert_eq!(range([1.0, 34.0], [0, 0], 1), 0..=33);
         assert_eq!(range([1.0, 34.0], [5, 80], 0), 5..=34);
         assert_eq!(range([1.5, 9.9], [7, 3], -10), 12..=19);
+    }
+
+    #[test]
+    fn what_lies_outside_of_the_range_stays_lost() {
+        let points = vec![Point::new(1.0, 2.0), Point::new(3.0, 4.0), Point::new(5.0, 1.0)];
+        let part = |key: FrameNumber, wants_key: &[FrameNumber]| Part {
+            keys: [(key, points.clone())].into(),
+            tracks: [(key, points.clone())].into(),
+            wants_key: wants_key.into(),
+            ..Part::default()
+        };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 20, fps: 24.0, width: 8, height: 8, held: false };
+        let parts = vec![part(7, &[5, 9]), part(1, &[2]), part(1, &[0, 9]), part(1, &[9])];
+        let mut scene = Scene { footage, parts };
+        let track =
+            |ends: Vec<TrackEnd>| PartTrack { tracks: [(1, points.clone())].into(), ends, ..PartTrack::default() };
+        let lost = || vec![TrackEnd { frame: 3, reason: Ending::Lost }];
+        let parts = vec![PartTrack::default(), track(lost()), track(lost()), track(Vec::new())];
+        merge(&mut scene, Tracking { parts, ..Tracking::default() }, &(0..=3));
+        let wanted = scene.parts.iter().map(|part| part.wants_key.clone()).collect::<Vec<_>>();
+        assert_eq!(wanted, [vec![5, 9], vec![3], vec![3], vec![9]]);
+        assert_eq!(scene.parts[0].tracks.len(), 1);
     }
 }

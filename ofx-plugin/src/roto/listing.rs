@@ -10,6 +10,7 @@
 
 use super::edit::order;
 use super::instance;
+use super::parts::meant;
 use crate::ofx::{Effect, Failure, host};
 use openfx::sys::image_effect_v1::param::kOfxParamPropChoiceOption;
 use rototoon::project::Document;
@@ -77,7 +78,8 @@ fn menu(effect: &Effect) -> Result<(), Failure> {
         }
     }
     let part = parameters.text(c"part")?;
-    let index = names.iter().position(|name| *name == part.trim()).map_or(0, |index| index as i32 + 1);
+    let part = document.as_ref().map_or("", |document| meant(&document.scene.parts, &part));
+    let index = names.iter().position(|name| *name == part).map_or(0, |index| index as i32 + 1);
     if parameters.int(MENU, 0.0)? == index { Ok(()) } else { parameters.set_int(MENU, index) }
 }
 

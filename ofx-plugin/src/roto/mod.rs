@@ -20,12 +20,14 @@
 //! - [`edits`]: stores edits and selections in the host's parameters; [`fresh`]: the document of a new composition
 //! - [`state`]: the settings of parts, and what tracks were made from; [`page`]: the settings of one part as parameters
 //! - [`listing`]: the list of the parts; [`choosing`]: selects a part from it
-//! - [`buttons`]: the buttons; [`saving`]: *Save*, which writes over nothing that another program wrote
+//! - [`buttons`]: the buttons; [`saving`]: *Save*, which writes over nothing that another program wrote; [`footage`]: the path of the
+//!   footage in files and in the composition
 //! - [`standing`]: whether a part is lost, doubtful or hidden on a frame; [`marks`]: shows it in the host's timeline;
 //!   [`visits`]: goes to such frames
 //! - [`motion`]: the motion of a part; [`taking_out`]: takes motions and shapes out;
 //!   [`id_files`]: writes ids as files for keyers; [`numbering`]: the composition's frames in these files
 //! - [`track`]: the button Track; [`job`]: runs the core's tracker on the source's frames, which [`fetching`] gets from the host
+//! - [`spans`]: which spans of parts wait for Track
 //! - [`follow`]: tracks an edit at once, on the [`film`] that stays in memory; [`watch`]: compares rendered frames with it, by
 //!   their [`sums`]; [`stale`]: tracks of a source that has changed
 
@@ -39,6 +41,7 @@ pub mod edits;
 pub mod fetching;
 pub mod film;
 pub mod follow;
+pub mod footage;
 pub mod fresh;
 pub mod id_files;
 pub mod instance;
@@ -62,6 +65,7 @@ pub mod render;
 pub mod saving;
 pub mod settings;
 pub mod shared;
+pub mod spans;
 pub mod stale;
 pub mod standing;
 pub mod state;

@@ -4,8 +4,8 @@
 //! only the overlay changes. Everything the editor works on is read anew for each event, because the host may have undone a
 //! step or set a parameter in between.
 
-use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work};
-use super::parts::selected;
+use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work, order};
+use super::parts::{meant, selected};
 use super::placement::Placement;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
@@ -57,7 +57,7 @@ impl Shown {
         let state = instance.state(&parameters).map_err(quiet)?;
         let settings = Settings::read(&parameters, view.time, &state)?;
         let mut parts = selected(&document.scene.parts, &settings.parts).0;
-        parts.sort_by(|&a, &b| document.scene.parts[a].depth.total_cmp(&document.scene.parts[b].depth).then(a.cmp(&b)));
+        order::sort_on(&document.scene, settings.frame(), &mut parts);
         let locked = |part: &usize| edits::is_locked(&parameters, &state, &document.scene.parts[*part].name);
         let unlocked = parts.iter().copied().filter(|part| !locked(part)).collect();
         let placement = Placement::of(&view.effect, &document.scene.footage, view.time, [1.0; 2])?;
@@ -66,7 +66,7 @@ impl Shown {
             Lens::new(Point::new((size(Point::X) - size(Point::ZERO)).x, (size(Point::Y) - size(Point::ZERO)).y));
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
-        let (name, stale) = (name.trim().into(), instance.stale());
+        let (name, stale) = (meant(&document.scene.parts, &name).into(), instance.stale());
         let colours = settings::colours(&parameters, &state)?;
         Ok(Self { document, parts, unlocked, settings, state, stale, colours, placement, lens, tool, closed, name })
     }
@@ -123,7 +123,8 @@ pub fn perform(view: &View) -> Result<(), Failure> {
     let shown = Shown::of(view)?;
     if view.event == Event::Draw {
         // A copy, so that the host may call back while it draws.
-        let editor = instance.editor().clone();
+        let mut editor = instance.editor().clone();
+        editor.follow(&shown.document.scene);
         canvas::draw(view, &shown, &editor);
         return Ok(());
     }

@@ -9,10 +9,29 @@ pub fn selected<'a>(parts: &[Part], names: &'a str) -> (Vec<usize>, Vec<&'a str>
     if patterns.is_empty() {
         return ((0..parts.len()).collect(), Vec::new());
     }
-    let meant = |part: &Part| patterns.iter().any(|pattern| matches(pattern, &part.name));
-    let indices = (0..parts.len()).filter(|&index| meant(&parts[index])).collect();
-    let missing = patterns.iter().filter(|pattern| !parts.iter().any(|part| matches(pattern, &part.name)));
-    (indices, missing.copied().collect())
+    let (mut found, mut missing) = (vec![false; parts.len()], Vec::new());
+    for pattern in patterns {
+        let of = |name: fn(&Part) -> &str| parts.iter().map(|part| matches(pattern, name(part))).collect::<Vec<_>>();
+        let mut meant = of(|part| &part.name);
+        if !meant.contains(&true) {
+            // Lists cannot have blanks at the ends of names, but documents can.
+            meant = of(|part| part.name.trim());
+        }
+        if !meant.contains(&true) {
+            missing.push(pattern);
+        }
+        found.iter_mut().zip(meant).for_each(|(found, meant)| *found |= meant);
+    }
+    ((0..parts.len()).filter(|&index| found[index]).collect(), missing)
+}
+
+/// The name of the part that a field means: the text, or the text without blanks around it, or a name that differs from it
+/// only by such blanks. A text that means no part is returned without them.
+pub fn meant<'a>(parts: &'a [Part], text: &'a str) -> &'a str {
+    let name = text.trim();
+    let equal = |wanted: &str| parts.iter().find(|part| part.name == wanted);
+    let found = equal(text).or_else(|| equal(name)).or_else(|| parts.iter().find(|part| part.name.trim() == name));
+    found.filter(|_| !name.is_empty()).map_or(name, |part| &part.name)
 }
 
 /// The names in a list with commas. They may have `*` for any text.
@@ -57,5 +76,17 @@ mod tests {
         ] {
             assert_eq!(selected(&parts, names), (indices, missing), "{names:?}");
         }
+    }
+
+    #[test]
+    fn names_may_have_blanks_at_their_ends() {
+        let part = |name: &str| Part { name: name.into(), ..Part::default() };
+        let (one, both) = ([part("arm "), part("leg")], [part("arm"), part("arm ")]);
+        assert_eq!(
+            ["arm", " arm ", "arm ", " leg", "", " ", " hat"].map(|text| meant(&one, text)),
+            ["arm ", "arm ", "arm ", "leg", "", "", "hat"]
+        );
+        assert_eq!(["arm", "arm ", " arm"].map(|text| meant(&both, text)), ["arm", "arm ", "arm"]);
+        assert_eq!((selected(&one, "arm").0, selected(&both, "arm").0), (vec![0], vec![0]));
     }
 }

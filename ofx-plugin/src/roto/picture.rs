@@ -4,6 +4,7 @@
 //! order. Neighbouring parts without settings and feather of their own are one layer: their union is exact. In ids the parts share each
 //! pixel by area, as in the command line's ids. If they are grown or feathered, nearer ones are laid over farther ones.
 
+use super::edit::order;
 use super::outlines::Lines;
 use super::placement::Placement;
 use super::settings::{Output, Settings};
@@ -234,7 +235,7 @@ impl Drawing<'_> {
     /// Those of the parts that are drawn, the farthest first.
     fn order(&self, parts: &[usize]) -> Vec<usize> {
         let mut order: Vec<usize> = parts.iter().copied().filter(|&part| self.look(part).on).collect();
-        order.sort_by(|&a, &b| self.scene.parts[a].depth.total_cmp(&self.scene.parts[b].depth).then(a.cmp(&b)));
+        order::sort_on(self.scene, self.settings.frame(), &mut order);
         if self.settings.shown { order } else { Vec::new() }
     }
 

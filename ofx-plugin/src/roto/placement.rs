@@ -90,6 +90,15 @@ impl Placement {
         pixels * self.scale.y
     }
 
+    /// Converts a region of canonical coordinates to a window of whole pixels with y turned down that contains it.
+    pub fn window(&self, region: &Region) -> Window {
+        let [least, most] =
+            [Point::new(region.x1, -region.y2), Point::new(region.x2, -region.y1)].map(|corner| corner * self.scale);
+        let [left, top] = least.floor().to_array().map(|value| value as i64);
+        let [right, bottom] = most.ceil().to_array().map(|value| value as i64);
+        Window { left, top, right, bottom }
+    }
+
     /// Converts bounds in pixels with y turned down to canonical coordinates.
     pub fn canonical(&self, bounds: &mask::Bounds) -> Region {
         let (least, most) = (bounds.least / self.scale, bounds.most / self.scale);

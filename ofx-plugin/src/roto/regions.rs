@@ -166,7 +166,13 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     let same = match drawn(effect, time, scale) {
         Ok(None) => true,
         Ok(Some(Drawn { settings, .. })) if settings.use_mask && settings.output == Output::Cutout => false,
-        Ok(Some(drawn)) => drawn.picture.changes_nothing(window(&Bounds { x1, y1, x2, y2 })),
+        Ok(Some(drawn)) => {
+            let asked = window(&Bounds { x1, y1, x2, y2 });
+            // A host without tiles gives whole pictures, and may say a wrong scale of them.
+            let whole = if host::tiles() { None } else { source_region(effect, time)? };
+            let looked_at = whole.map_or(asked, |whole| asked.united(drawn.placement.window(&whole)));
+            drawn.picture.changes_nothing(looked_at)
+        }
         Err(_) => false,
     };
     if !same {

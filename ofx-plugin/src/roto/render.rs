@@ -12,7 +12,7 @@ use super::watch::Watch;
 use crate::description::{MASK, OUTPUT, SOURCE};
 use crate::ofx::entry::Action;
 use crate::ofx::image::Rows;
-use crate::ofx::{Bounds, Effect, Failure, Image, threads};
+use crate::ofx::{Bounds, Clip, Effect, Failure, Image, threads};
 use crate::pixels::{CLEAR, Layout, Pixel};
 use openfx::sys::generic::core::kOfxPropTime;
 use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow};
@@ -81,9 +81,19 @@ fn band(drawn: Option<&Drawn>, asked: Bounds, threads: usize) -> i32 {
 /// The input images of a render.
 struct Sources<'a> {
     source: Option<Image<'a>>,
-    mask: Option<Image<'a>>,
+    mask: Mask<'a>,
     /// Whether the source is still what the last Track saw.
     watch: Option<Watch>,
+}
+
+/// What limits the picture.
+enum Mask<'a> {
+    /// Nothing: the mask is not connected, or not used.
+    Unused,
+    /// The mask's pixels.
+    Of(Image<'a>),
+    /// A mask that has no pixels here. By OpenFX its image is then black and transparent.
+    Empty,
 }
 
 impl<'a> Sources<'a> {
@@ -93,13 +103,15 @@ impl<'a> Sources<'a> {
         // Without a document the output is the unchanged source, or an empty matte.
         let shown = passes_source(effect, time)? || Mixing::read(&parameters, time)?.needs_source();
         let masked = parameters.int(c"useMask", time)? != 0;
-        let image = |name| match effect.clip(name) {
-            Ok(clip) if clip.connected() => clip.image(time),
-            _ => Ok(None),
-        };
+        let connected = |name| effect.clip(name).ok().filter(Clip::connected);
+        let source = if shown { connected(SOURCE) } else { None };
+        let mask = if masked { connected(MASK) } else { None };
         Ok(Self {
-            source: if shown { image(SOURCE)? } else { None },
-            mask: if masked { image(MASK)? } else { None },
+            source: source.map_or(Ok(None), |clip| clip.image(time))?,
+            mask: match mask {
+                Some(clip) => clip.image(time)?.map_or(Mask::Empty, Mask::Of),
+                None => Mask::Unused,
+            },
             watch: None,
         })
     }
@@ -146,10 +158,14 @@ fn draw(
                 &below[..]
             });
             painting.row(row, &mut pixels, &mut go_on)?;
-            let limit = sources.mask.as_ref().map(|mask| {
-                limit(mask, &bounds, y, &mut limits);
-                &limits[..]
-            });
+            let limit = match &sources.mask {
+                Mask::Unused => None,
+                Mask::Empty => Some(&limits[..]),
+                Mask::Of(mask) => {
+                    limit(mask, &bounds, y, &mut limits);
+                    Some(&limits[..])
+                }
+            };
             mixing.finish(&mut pixels, below, limit, &format);
         }
         if let Some(bytes) = rows.row(y) {

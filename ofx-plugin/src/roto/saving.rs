@@ -8,14 +8,15 @@
 //! Limits: a file from which no shapes were taken is replaced, because the user chose its name. Compositions of earlier versions have no marks until they load
 //! or save. Hosts that do not know parameters without undo make a step of *Save*.
 
-use super::buttons::{chosen, folder, foreign};
+use super::buttons::{chosen, foreign};
 use super::instance::{NO_SHAPES, ORIGIN};
 use super::state::FileMark;
-use super::{instance, stored};
+use super::{footage, instance, stored};
 use crate::ofx::{Effect, Failure};
 use rototoon::pipeline::unchanged::{self, Mark};
 use rototoon::project::Document;
-use rototoon::project::path::{real, slashed};
+use rototoon::project::path::real;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 /// Most files of which a node notes what it saved.
@@ -34,13 +35,32 @@ pub fn save(effect: &Effect) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::Told(error.to_string());
     let text = document(&parameters.text(c"document")?, &path)?.to_save(&path).map_err(|error| told(&error))?;
     let mut saved = notes(&parameters.text(c"saved")?);
-    let read = instance.state(&parameters)?.read.clone();
-    let mark =
-        unchanged::replace(&path, &text, &marks(read.iter().chain(&saved), &path)).map_err(|error| told(&error))?;
-    saved.retain(|file| !is_same(Path::new(&file.path), &path));
-    saved.push(FileMark { path: path.to_string_lossy().into_owned(), mark: mark.to_string() });
+    let from = instance.state(&parameters)?.read.clone();
+    let known = marks(from.iter().chain(saved.iter().map(|saved| &saved.file)), &path);
+    let mark = unchanged::replace(&path, &text, &known).map_err(|error| told(&error))?;
+    saved.retain(|saved| !is_same(&saved.file.path, &path));
+    let file = FileMark { path: path.to_string_lossy().into_owned(), mark: mark.to_string() };
+    saved.push(Saved { file, from });
     saved.drain(..saved.len().saturating_sub(MOST_SAVED));
     parameters.set_text(c"saved", &serde_json::to_string(&saved).unwrap_or_default())
+}
+
+/// What is noted of a file that was saved.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Saved {
+    #[serde(flatten)]
+    file: FileMark,
+    /// The document that the shapes were taken from. Shapes of another one are no later state of what was saved.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    from: Option<FileMark>,
+}
+
+/// Whether a file holds an earlier state of the composition's shapes, because they were saved to it.
+pub fn has_saved(effect: &Effect, path: &Path) -> Result<bool, Failure> {
+    let parameters = effect.parameters()?;
+    let Ok(state) = instance(effect)?.state(&parameters) else { return Ok(false) };
+    let ours = |saved: &Saved| is_same(&saved.file.path, path) && saved.from == state.read;
+    Ok(notes(&parameters.text(c"saved")?).iter().any(ours))
 }
 
 /// The document to write, from the composition's text.
@@ -50,27 +70,22 @@ fn document(text: &str, path: &Path) -> Result<Document, Failure> {
     }
     let json = stored::decode(text).map_err(|error| Failure::Told(format!("{ORIGIN}: {error}")))?;
     let mut document = Document::parse(&json, ORIGIN).map_err(|error| Failure::Told(error.to_string()))?;
-    let folder = folder(path);
-    let pattern = &mut document.scene.footage.pattern;
-    if let Some(folder) = folder.to_str()
-        && let Ok(relative) = Path::new(pattern.as_str()).strip_prefix(folder.replace('%', "%%"))
-    {
-        *pattern = slashed(relative);
-    }
+    footage::make_relative(&mut document, path);
     Ok(document)
 }
 
 /// The files that were saved. A text that cannot be read notes none: then *Save* rather makes one more file.
-fn notes(text: &str) -> Vec<FileMark> {
+fn notes(text: &str) -> Vec<Saved> {
     serde_json::from_str(text).unwrap_or_default()
 }
 
 /// The marks of a file.
 fn marks<'a>(known: impl Iterator<Item = &'a FileMark>, path: &Path) -> Vec<Mark> {
-    known.filter(|file| is_same(Path::new(&file.path), path)).filter_map(|file| Mark::parse(&file.mark)).collect()
+    known.filter(|file| is_same(&file.path, path)).filter_map(|file| Mark::parse(&file.mark)).collect()
 }
 
 /// Whether two paths lead to one file.
-fn is_same(one: &Path, other: &Path) -> bool {
+pub fn is_same(one: &str, other: &Path) -> bool {
+    let one = Path::new(one);
     one == other || matches!((real(one), real(other)), (Ok(one), Ok(other)) if one == other)
 }

@@ -4,7 +4,7 @@ use super::page;
 use super::state::{PartLook, PartSettings, State, blend, falloff};
 use crate::ofx::{Failure, Parameters};
 use rototoon::render::coverage::MOST_INSTANTS;
-use rototoon::scene::Falloff;
+use rototoon::scene::{Falloff, FrameNumber};
 use std::collections::BTreeMap;
 use std::ffi::CStr;
 
@@ -149,6 +149,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The frame of the document that is nearest to the time.
+    pub fn frame(&self) -> FrameNumber {
+        self.document_time.round() as FrameNumber
+    }
+
     /// Reads the values. A number that is not finite counts as 0.
     pub fn read(parameters: &Parameters, time: f64, state: &State) -> Result<Self, Failure> {
         let number = |id| parameters.double(id, time).map(|v| if v.is_finite() { v } else { 0.0 });

@@ -6,6 +6,7 @@
 //!
 //! The text is JSON with a version, encoded as the document is ([`super::stored`]).
 
+use super::spans::Span;
 use super::stored;
 use rototoon::render::composite::Blend;
 use rototoon::scene::{Falloff, FalloffCurve, Part};
@@ -219,6 +220,9 @@ pub struct State {
     /// For each tracked part a sum of the keys and corrections that its tracks were made from, [`OTHER_ORDER`] or [`OTHER_SOURCE`].
     #[serde(default)]
     pub tracked: BTreeMap<String, String>,
+    /// The spans of parts that were changed since they were tracked ([`super::spans`]).
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub changed: BTreeMap<String, Vec<Span>>,
 }
 
 impl Default for State {
@@ -230,6 +234,7 @@ impl Default for State {
             read: None,
             parts: BTreeMap::new(),
             tracked: BTreeMap::new(),
+            changed: BTreeMap::new(),
         }
     }
 }
@@ -270,12 +275,24 @@ impl State {
     /// Notes that the tracks of these parts are made from their keys and corrections as they are now.
     pub fn note_tracked<'a>(&mut self, parts: impl IntoIterator<Item = &'a Part>) {
         for part in parts {
+            self.changed.remove(&part.name);
             if part.tracks.is_empty() {
                 self.tracked.remove(&part.name);
             } else {
                 self.tracked.insert(part.name.clone(), inputs(part));
             }
         }
+    }
+
+    /// Whether the tracks of a part were made with another order of the parts, or from another source.
+    pub fn has_other_input(&self, part: &Part) -> bool {
+        self.tracked.get(&part.name).is_some_and(|sum| [OTHER_ORDER, OTHER_SOURCE].contains(&sum.as_str()))
+    }
+
+    /// Makes all of a part's tracks old, for a reason.
+    fn make_old(&mut self, part: &Part, reason: &str) {
+        self.changed.remove(&part.name);
+        self.tracked.insert(part.name.clone(), reason.into());
     }
 
     /// Before an edit: notes what tracks that came with a project were made from, so that the edit makes them old.
@@ -297,7 +314,7 @@ impl State {
         for (part, was) in both.iter().filter(|(part, _)| !part.tracks.is_empty()) {
             let changed = |(other, its): &(&Part, f64)| other.closed && (other.depth > part.depth) != (its > was);
             if both.iter().any(changed) {
-                self.tracked.insert(part.name.clone(), OTHER_ORDER.into());
+                self.make_old(part, OTHER_ORDER);
             }
         }
     }
@@ -310,6 +327,9 @@ impl State {
         if let Some(sum) = self.tracked.remove(old) {
             self.tracked.insert(new.to_owned(), sum);
         }
+        if let Some(spans) = self.changed.remove(old) {
+            self.changed.insert(new.to_owned(), spans);
+        }
         if self.page == old {
             new.clone_into(&mut self.page);
         }
@@ -317,7 +337,7 @@ impl State {
 
     /// Makes the tracks of parts old because the source has changed since.
     pub fn note_stale<'a>(&mut self, parts: impl IntoIterator<Item = &'a Part>) {
-        self.tracked.extend(parts.into_iter().map(|part| (part.name.clone(), OTHER_SOURCE.into())));
+        parts.into_iter().for_each(|part| self.make_old(part, OTHER_SOURCE));
     }
 
     /// Notes that the shapes are those of a file.
@@ -331,6 +351,7 @@ impl State {
         let known = |name: &String| parts.iter().any(|part| part.name == *name);
         self.parts.retain(|name, _| known(name));
         self.tracked.retain(|name, _| known(name));
+        self.changed.retain(|name, _| known(name));
         if !known(&self.page) {
             self.page.clear();
         }

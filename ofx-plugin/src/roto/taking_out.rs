@@ -2,6 +2,7 @@
 
 use super::instance::NO_SHAPES;
 use super::motion::Motion;
+use super::parts::meant;
 use super::placement::Placement;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
@@ -40,8 +41,9 @@ fn document(effect: &Effect) -> Result<Arc<Loaded>, Failure> {
 /// Sets keys for the motion of the selected part on all of its frames.
 pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
     let (document, parameters) = (document(effect)?, effect.parameters()?);
-    let name = parameters.text(c"part")?;
-    let part = document.scene.parts.iter().find(|part| part.name == name.trim());
+    let text = parameters.text(c"part")?;
+    let name = meant(&document.scene.parts, &text);
+    let part = document.scene.parts.iter().find(|part| part.name == name);
     let part = part.ok_or_else(|| Failure::Told("select a part first: its name is in Part".into()))?;
     let shapes = if part.tracks.is_empty() { &part.keys } else { &part.tracks };
     if shapes.is_empty() {

@@ -32,7 +32,7 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     if job.stays(&kept) {
         instance.keep_frames(Film::new(job.terms(), kept, tracker), drops);
     }
-    let (document, tracked) = job.merged(&document, tracking)?;
-    instance.forget_stale(tracked.iter().map(|&part| &document.scene.parts[part]));
-    edits::store_tracked(effect, &document, &tracked)
+    let tracked = job.merged(&document, tracking)?;
+    instance.replace_stale(&document.scene.parts, &tracked);
+    edits::store_tracked(effect, &document.scene.parts, tracked)
 }

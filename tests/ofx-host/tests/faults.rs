@@ -1,8 +1,8 @@
 //! Faults that were seen in real hosts.
 
 use crate::common::{
-    CUTOUT, FILTER, HEIGHT, IDS, MATTE, OK, ROTO, WHOLE, WIDTH, bundles, clean, document, effect, footage, host, p,
-    part, pattern, rendered, scene,
+    CUTOUT, FILTER, HEIGHT, IDS, MATTE, OK, OVERLAY, ROTO, WHOLE, WIDTH, bundles, clean, document, effect, footage,
+    host, p, part, pattern, rendered, scene,
 };
 use rototoon::project::Document;
 use rototoon::render;
@@ -181,6 +181,23 @@ fn pixels_at_another_scale_than_the_host_says_are_met() {
         host.configure(&Settings { real_scale: real, tiles, ..Settings::default() });
         assert_eq!(effect.render(2.0, window, said, 1, 0), OK);
         assert!(effect.output() == honest, "{output} {real}");
+    }
+    host.configure(&Settings::default());
+}
+
+#[test]
+fn shapes_show_in_pictures_whose_scale_is_wrong() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    // In the upper right, outside of a picture of half the size.
+    let corner = part("box", 0.0, true, |_| vec![p(44.0, 4.0), p(60.0, 4.0), p(60.0, 12.0), p(44.0, 12.0)]);
+    let document = Document::new(Scene { footage: footage(), parts: vec![corner] });
+    effect.set_text("document", &document.to_json());
+    effect.set("output", &[OVERLAY]);
+    let half = Bounds { x1: 0, y1: 0, x2: 32, y2: 24 };
+    for (tiles, identical) in [(true, "Source"), (false, "")] {
+        host.configure(&Settings { real_scale: 0.5, tiles, ..Settings::default() });
+        assert_eq!(effect.identity(2.0, half, 1.0), identical, "{tiles}");
     }
     host.configure(&Settings::default());
 }

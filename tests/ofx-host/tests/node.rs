@@ -204,6 +204,21 @@ fn a_mask_limits_matte_and_cutout() {
 }
 
 #[test]
+fn a_connected_mask_without_pixels_leaves_nothing() {
+    let host = host();
+    let mut effect = node(&host, GENERAL);
+    effect.set("useMask", &[1.0]);
+    assert_eq!(shown(&host, &mut effect, 1.0)[20], 1.0, "a mask that is not connected limits nothing");
+    // The mask's region is outside of the picture, so the host has no image of it.
+    effect.set_clip("Mask", &ClipSettings { x1: 900, y1: 900, x2: 964, y2: 948, ..ClipSettings::default() });
+    effect.preferences();
+    assert_eq!(shown(&host, &mut effect, 1.0), [0.0; WIDTH]);
+    effect.set("output", &[CUTOUT]);
+    assert_eq!(shown(&host, &mut effect, 1.0), [0.0; WIDTH]);
+    clean(&host);
+}
+
+#[test]
 fn region_and_frames_are_limited() {
     let host = host();
     let mut effect = node(&host, FILTER);

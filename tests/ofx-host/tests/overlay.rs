@@ -282,6 +282,9 @@ fn buttons_make_and_delete_keys_points_and_parts() {
     effect.set_text("part", "star");
     assert_eq!(effect.press_at("deletePart", 2.0), OK);
     assert_eq!((kept(&effect).scene.parts.len(), effect.text("part").as_str()), (2, ""));
+    // The part that has its place now is not selected.
+    assert_eq!(effect.overlay_key(KEY, 2.0, DELETE), NOT_OURS);
+    assert_eq!(kept(&effect).scene.parts.len(), 2);
     effect.undo();
     assert_eq!((kept(&effect).scene.parts.len(), effect.text("part").as_str()), (3, "star"));
     assert_eq!(effect.press_at("newPart", 2.0), OK);
@@ -298,6 +301,11 @@ fn locked_parts_are_left_alone() {
     let at = scene().parts[0].tracks[&2][0];
     drag(&mut effect, 2.0, at, at + Point::new(3.0, 2.0));
     assert_eq!(effect.press_at("deletePart", 2.0), "kOfxStatFailed");
+    // Nor does a contour that is drawn replace its key.
+    effect.set("tool", &[FREEHAND]);
+    drag(&mut effect, 0.0, at, at + Point::new(3.0, 2.0));
+    effect.set("tool", &[0.0]);
+    assert!(host.messages().iter().any(|text| text.contains("\"star\" is locked or not among Parts")));
     // The lock belongs to the part, also when another one is selected.
     effect.set_text("part", "drop");
     assert_eq!(effect.get("partLock", 0.0), [0.0]);

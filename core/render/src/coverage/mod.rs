@@ -80,7 +80,7 @@ impl Window {
     }
 
     /// The smallest window that contains both.
-    pub(super) fn united(self, other: Self) -> Self {
+    pub fn united(self, other: Self) -> Self {
         Self {
             left: self.left.min(other.left),
             top: self.top.min(other.top),

@@ -7,13 +7,13 @@
 //!
 //! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
 //! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
-//! contour is drawn in one stroke.
+//! contour is drawn in one stroke. Only with *Select* do Delete and Backspace delete what is selected.
 
 use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::FrameNumber;
+use rototoon::scene::{FrameNumber, Scene};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Movement of the pen in screen pixels up to which a press is a click.
@@ -36,9 +36,9 @@ pub enum Tool {
 /// A key of the keyboard that means something here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
-    /// Deletes the selected points.
+    /// Deletes the selected points with the tool *Select*.
     Delete,
-    /// Takes the last point back, or deletes.
+    /// Takes the last point back, or deletes as the other one does.
     Back,
     /// Drops the unfinished work, or the selection.
     Escape,
@@ -67,6 +67,14 @@ pub struct Work<'a> {
     pub closed: bool,
     /// Name of the part that is drawn; empty for a new one.
     pub name: &'a str,
+}
+
+impl Work<'_> {
+    /// Why nothing can be drawn: the part that is named must not be changed.
+    fn refusal(&self) -> Option<Refused> {
+        let named = self.document.scene.parts.iter().position(|part| part.name == self.name);
+        named.filter(|part| !self.parts.contains(part)).map(|_| Refused::protected(self.name))
+    }
 }
 
 /// What an event led to.
@@ -133,6 +141,8 @@ pub struct Sketch {
 pub struct Editor {
     /// The selected points.
     pub selection: Selection,
+    /// The names of the parts that the selection counts.
+    names: Vec<String>,
     drag: Option<Drag>,
     sketch: Option<Sketch>,
     /// Whether the last press of the pen was handled here, so that its release is too.
@@ -142,6 +152,25 @@ pub struct Editor {
 }
 
 impl Editor {
+    /// Keeps the selection to the parts that it was made on, whatever became of the document since.
+    pub fn follow(&mut self, scene: &Scene) {
+        self.selection.keep_existing(&self.names, scene);
+        if !self.names.iter().eq(scene.parts.iter().map(|part| &part.name)) {
+            self.names = scene.parts.iter().map(|part| part.name.clone()).collect();
+        }
+    }
+
+    /// Selects points of a document's parts.
+    pub fn select(&mut self, selection: Selection, scene: &Scene) {
+        self.follow(scene);
+        self.selection = selection;
+    }
+
+    /// A part has another name, and stays selected.
+    pub fn rename(&mut self, old: &str, new: &str) {
+        self.names.iter_mut().filter(|name| *name == old).for_each(|name| new.clone_into(name));
+    }
+
     /// The contour that is being drawn on a frame.
     pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
         self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
@@ -232,9 +261,14 @@ impl Editor {
 
     /// The pen goes down.
     pub fn down(&mut self, work: &Work, pen: Point) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
+        self.follow(&work.document.scene);
         self.drag = None;
         self.pressed = work.tool != Tool::Off;
+        if matches!(work.tool, Tool::Contour | Tool::Freehand)
+            && let Some(refused) = work.refusal()
+        {
+            return Outcome::Refused(refused);
+        }
         match work.tool {
             Tool::Off => Outcome::Ignored,
             Tool::Contour => self.set_point(work, pen),
@@ -328,7 +362,7 @@ impl Editor {
         let mut document = work.document.clone();
         match contour::draw(&mut document, work.frame, work.name, points, work.closed, work.tool != Tool::Freehand) {
             Ok(part) => {
-                self.selection = Selection::part(part, &document.scene);
+                self.select(Selection::part(part, &document.scene), &document.scene);
                 Outcome::Edited(Edit { label: "Draw contour", document })
             }
             Err(refused) => Outcome::Refused(refused),
@@ -356,6 +390,7 @@ impl Editor {
 
     /// The pen goes up.
     pub fn up(&mut self, work: &Work, pen: Point) -> Outcome {
+        self.follow(&work.document.scene);
         let pressed = std::mem::take(&mut self.pressed);
         let Some(drag) = &mut self.drag else {
             return if pressed { Outcome::Shown } else { Outcome::Ignored };
@@ -426,6 +461,7 @@ impl Editor {
 
     /// A key of the keyboard goes down or up.
     pub fn key(&mut self, work: &Work, key: Key) -> Outcome {
+        self.follow(&work.document.scene);
         match key {
             Key::Shift(down) => self.shift = down,
             Key::Control(down) => self.control = down,
@@ -438,6 +474,10 @@ impl Editor {
                 return self.selected(work);
             }
             Key::Enter => {
+                // The contour stays, so that it can be finished when the part may be changed again.
+                if let Some(refused) = self.sketch(work.frame).and_then(|_| work.refusal()) {
+                    return Outcome::Refused(refused);
+                }
                 if let Some(sketch) = self.sketch.take_if(|sketch| sketch.frame == work.frame) {
                     return self.finish(work, sketch.points);
                 }
@@ -452,7 +492,9 @@ impl Editor {
                 }
                 return Outcome::Shown;
             }
-            Key::Delete | Key::Back if !self.selection.is_empty() && work.tool != Tool::Off => {
+            // The part that was drawn last is selected. One key too many must not delete it, and in the host it may delete a node.
+            Key::Delete | Key::Back if matches!(work.tool, Tool::Contour | Tool::Freehand) => return Outcome::Shown,
+            Key::Delete | Key::Back if !self.selection.is_empty() && work.tool == Tool::Select => {
                 return self.delete_selected(work);
             }
             Key::Delete | Key::Back | Key::Escape => {}

@@ -44,4 +44,9 @@ impl Refused {
     fn new(text: impl Into<String>) -> Self {
         Self(text.into())
     }
+
+    /// The part with a name must not be changed.
+    pub fn protected(name: &str) -> Self {
+        Self(format!("{name:?} is locked or not among Parts"))
+    }
 }

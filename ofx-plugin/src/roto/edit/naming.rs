@@ -11,6 +11,11 @@ pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Re
     if name.is_empty() {
         return Err(Refused::new("write the new name in New name first"));
     }
+    if name.contains([',', '*']) {
+        return Err(Refused::new(format!(
+            "New name: found {name:?}, expected a name without \",\" and \"*\", which lists of parts need"
+        )));
+    }
     if document.scene.parts.iter().any(|part| part.name == name) {
         return Err(Refused::new(format!("a part has the name {name:?} already")));
     }
@@ -40,7 +45,9 @@ mod tests {
             Footage { pattern: "%d.png".into(), first: 0, last: 9, fps: 24.0, width: 8, height: 8, held: false };
         let parts = ["a", "b"].map(|name| Part { name: name.into(), ..Part::default() }).into();
         let mut document = Document::new(Scene { footage, parts });
-        for (name, why) in [("", "New name"), ("b", "already"), ("a", "already")] {
+        for (name, why) in
+            [("", "New name"), ("b", "already"), ("a", "already"), ("a, left", "without"), ("a*", "without")]
+        {
             assert!(rename(&mut document, 0, name).unwrap_err().0.contains(why), "{name:?}");
         }
         rename(&mut document, 0, "größe").unwrap();

@@ -6,12 +6,18 @@
 
 use super::Refused;
 use rototoon::project::Document;
-use rototoon::scene::{Part, Scene};
+use rototoon::scene::{FrameNumber, Part, Scene};
 
 /// Least distance of depths between which a part is put.
 const ROOM: f64 = 1e-3;
 
-/// Indices of the parts, the farthest first.
+/// Sorts parts by their order on a frame, the farthest first.
+pub fn sort_on(scene: &Scene, frame: FrameNumber, parts: &mut [usize]) {
+    let depth = |part: usize| scene.parts[part].depth_at(frame);
+    parts.sort_by(|&a, &b| depth(a).total_cmp(&depth(b)).then(a.cmp(&b)));
+}
+
+/// Indices of the parts, the farthest first, on frames on which no part has a depth of its own.
 pub fn farthest_first(scene: &Scene) -> Vec<usize> {
     let mut order: Vec<usize> = (0..scene.parts.len()).collect();
     order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth).then(a.cmp(&b)));
@@ -151,6 +157,18 @@ mod tests {
             assert_eq!(farthest_first(&document.scene), order, "{part} to {place}");
         }
         assert!(move_to(&mut document, 9, 1).is_err());
+    }
+
+    #[test]
+    fn depths_of_single_frames_count_there() {
+        let mut document = document(&[2.0, 1.0, 1.0]);
+        document.scene.parts[0].depths = [(3, 0.5)].into();
+        let on = |frame| {
+            let mut parts = vec![2, 0, 1];
+            sort_on(&document.scene, frame, &mut parts);
+            parts
+        };
+        assert_eq!((on(2), on(3)), (vec![1, 2, 0], vec![0, 1, 2]));
     }
 
     #[test]

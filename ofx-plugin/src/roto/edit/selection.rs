@@ -70,9 +70,17 @@ impl Selection {
         self.0.extend(other.iter());
     }
 
-    /// Drops points that a document no longer has, as after an undo.
-    pub fn keep_existing(&mut self, scene: &Scene) {
-        self.0.retain(|place| scene.parts.get(place.part).is_some_and(|part| place.point < part.point_count()));
+    /// Drops points that a document no longer has, as after an undo. `names` are those of the parts when the points were
+    /// selected: parts may have come and gone since, so that others have their indices.
+    pub fn keep_existing(&mut self, names: &[String], scene: &Scene) {
+        let index = |part: usize| {
+            let name = names.get(part)?;
+            // Mostly nothing has changed.
+            let same = scene.parts.get(part).is_some_and(|part| part.name == *name);
+            if same { Some(part) } else { scene.parts.iter().position(|part| part.name == *name) }
+        };
+        let now = self.iter().filter_map(|place| Some(Place { part: index(place.part)?, ..place }));
+        self.0 = now.filter(|place| place.point < scene.parts[place.part].point_count()).collect();
     }
 
     /// The points that exist on a frame.

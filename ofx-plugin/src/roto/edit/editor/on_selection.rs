@@ -5,15 +5,27 @@ use crate::roto::edit::{Place, Refused, Selection, change, feather, points};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Editor {
+    /// The parts with selected points that may be changed.
+    fn changeable(&mut self, work: &Work) -> Result<BTreeSet<usize>, Refused> {
+        self.follow(&work.document.scene);
+        let mut parts = self.selection.parts();
+        let first = parts.first().copied();
+        parts.retain(|part| work.parts.contains(part));
+        match first {
+            Some(part) if parts.is_empty() => Err(Refused::protected(&work.document.scene.parts[part].name)),
+            _ => Ok(parts),
+        }
+    }
+
     /// Deletes the selected points. A part of which all points are selected is deleted.
     pub fn delete_selected(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
+        let parts = match self.changeable(work) {
+            Ok(parts) => parts,
+            Err(refused) => return Outcome::Refused(refused),
+        };
         let mut document = work.document.clone();
         // From the last part to the first, so that indices stay valid.
-        for part in self.selection.parts().into_iter().rev() {
-            if !work.parts.contains(&part) {
-                continue;
-            }
+        for part in parts.into_iter().rev() {
             let chosen = self.selection.of_part(part);
             let all = chosen.len() == document.scene.parts[part].point_count();
             let done = if all {
@@ -31,10 +43,13 @@ impl Editor {
 
     /// Inserts a point in the middle between neighbouring selected points.
     pub fn insert_between(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
+        let parts = match self.changeable(work) {
+            Ok(parts) => parts,
+            Err(refused) => return Outcome::Refused(refused),
+        };
         let mut document = work.document.clone();
         let mut new = Vec::new();
-        for part in self.selection.parts() {
+        for part in parts {
             let chosen = self.selection.of_part(part);
             let (count, segments) =
                 (document.scene.parts[part].point_count(), document.scene.parts[part].segment_count());
@@ -54,10 +69,13 @@ impl Editor {
 
     /// Smooths the selected points on the frame.
     pub fn smooth_selected(&mut self, work: &Work) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
+        let parts = match self.changeable(work) {
+            Ok(parts) => parts,
+            Err(refused) => return Outcome::Refused(refused),
+        };
         let scene = &work.document.scene;
         let mut moved = BTreeMap::new();
-        for part in self.selection.parts() {
+        for part in parts {
             let smoothed = change::smoothed(&scene.parts[part], work.frame, &self.selection.of_part(part));
             moved.extend(smoothed.into_iter().map(|(point, to)| (Place { part, point }, to)));
         }
@@ -71,8 +89,11 @@ impl Editor {
 
     /// Gives the selected points a feather.
     pub fn feather_selected(&mut self, work: &Work, width: f64) -> Outcome {
-        self.selection.keep_existing(&work.document.scene);
-        let places: Vec<Place> = self.selection.iter().filter(|place| work.parts.contains(&place.part)).collect();
+        let parts = match self.changeable(work) {
+            Ok(parts) => parts,
+            Err(refused) => return Outcome::Refused(refused),
+        };
+        let places: Vec<Place> = self.selection.iter().filter(|place| parts.contains(&place.part)).collect();
         if places.is_empty() {
             return Outcome::Refused(Refused::new("select points first"));
         }

@@ -152,6 +152,79 @@ fn wrong_contours_are_refused_and_unfinished_ones_dropped() {
 }
 
 #[test]
+fn a_key_too_many_while_drawing_deletes_nothing() {
+    let document = document();
+    let (mut editor, mut work) = (Editor::default(), work(&document));
+    work.tool = Tool::Contour;
+    for at in [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)] {
+        editor.down(&work, at);
+    }
+    let drawn = edited(editor.key(&work, Key::Enter));
+    let mut next = Work { document: &drawn, parts: &[0, 1, 2], ..work };
+    assert_eq!(editor.selection.parts(), [2].into(), "the new part is selected");
+    editor.down(&next, p(10.0, 10.0));
+    for key in [Key::Back, Key::Back, Key::Delete] {
+        assert!(matches!(editor.key(&next, key), Outcome::Shown), "{key:?}");
+    }
+    next.tool = Tool::Freehand;
+    assert!(matches!(editor.key(&next, Key::Back), Outcome::Shown));
+    next.tool = Tool::Select;
+    assert_eq!(edited(editor.key(&next, Key::Back)).scene.parts.len(), 2);
+}
+
+#[test]
+fn parts_that_must_not_be_changed_are_neither_drawn_nor_changed() {
+    let document = document();
+    let mut work = Work { parts: &[1], ..work(&document) };
+    let mut editor = Editor::default();
+    editor.select(Selection::part(0, &document.scene), &document.scene);
+    let protected =
+        |outcome| matches!(outcome, Outcome::Refused(text) if text.0 == "\"square\" is locked or not among Parts");
+    assert!(protected(editor.insert_between(&work)) && protected(editor.smooth_selected(&work)));
+    assert!(protected(editor.delete_selected(&work)) && protected(editor.feather_selected(&work, 3.0)));
+    // Of several parts those are changed that may be.
+    editor.selection.add(&Selection::part(1, &document.scene));
+    let inserted = edited(editor.insert_between(&work));
+    assert_eq!([0, 1].map(|part| inserted.scene.parts[part].point_count()), [4, 3]);
+    for tool in [Tool::Contour, Tool::Freehand] {
+        (work.tool, work.name) = (tool, "square");
+        assert!(protected(editor.down(&work, p(10.0, 10.0))) && editor.sketch(FRAME).is_none());
+        assert!(matches!(editor.up(&work, p(10.0, 10.0)), Outcome::Shown));
+    }
+    // A contour that was begun before stays, and is finished when the part may be changed again.
+    let open = Work { parts: &[0, 1], tool: Tool::Contour, ..work };
+    for at in [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)] {
+        editor.down(&open, at);
+    }
+    work.tool = Tool::Contour;
+    assert!(protected(editor.key(&work, Key::Enter)) && protected(editor.down(&work, p(100.0, 40.0))));
+    assert_eq!(edited(editor.key(&open, Key::Enter)).scene.parts[0].keys.len(), 3);
+}
+
+#[test]
+fn the_selection_stays_with_its_part_when_parts_come_and_go() {
+    let document = document();
+    let mut fewer = document.clone();
+    fewer.scene.parts.remove(0);
+    let mut editor = Editor::default();
+    editor.select(Selection::part(1, &document.scene), &document.scene);
+    editor.follow(&fewer.scene);
+    assert_eq!(editor.selection, Selection::part(0, &fewer.scene), "the line has another index");
+    editor.follow(&document.scene);
+    assert_eq!(editor.selection, Selection::part(1, &document.scene));
+    editor.select(Selection::part(0, &document.scene), &document.scene);
+    let few = Work { parts: &[0], ..work(&fewer) };
+    assert!(matches!(editor.key(&few, Key::Delete), Outcome::Ignored), "the square is gone");
+    assert!(editor.selection.is_empty());
+    editor.select(Selection::part(0, &fewer.scene), &fewer.scene);
+    let mut renamed = fewer.clone();
+    renamed.scene.parts[0].name = "ground".into();
+    editor.rename("line", "ground");
+    editor.follow(&renamed.scene);
+    assert_eq!(editor.selection.len(), 2);
+}
+
+#[test]
 fn points_are_inserted_deleted_and_smoothed() {
     let document = document();
     let (mut editor, work) = (Editor::default(), work(&document));
@@ -208,7 +281,7 @@ fn a_drag_with_control_gives_the_selected_points_a_feather() {
 fn handles_scale_and_a_drag_over_a_change_of_frame_is_dropped() {
     let document = document();
     let (mut editor, mut work) = (Editor::default(), work(&document));
-    editor.selection = Selection::part(0, &document.scene);
+    editor.select(Selection::part(0, &document.scene), &document.scene);
     let corner = editor.handles(&work).unwrap().corners()[2];
     let scaled = edited(drag(&mut editor, &work, corner, corner + p(34.0, 34.0)));
     // The handle is 14 pixels off the points, 34 from the opposite corner: it doubles the size.
