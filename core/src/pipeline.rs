@@ -68,7 +68,7 @@ pub use recolour::{colours, named as named_colours, recolour};
 pub use render::render;
 pub use report::{Counts, PartReport, Report, Together, Weakest};
 pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
-pub use seen::changed;
+pub use seen::{Noted, changed};
 pub use shapeless::nothing_for;
 pub use shapes::{ShapeFormat, import_shifted, shapes_text};
 pub use sheet::{Sheet, sheet};
@@ -85,14 +85,14 @@ use crate::geometry::Point;
 use crate::pictures::Sequence;
 use crate::project::curves::{CurveGuides, Curves};
 use crate::project::save::DECIMALS;
-use crate::project::seen::Made;
+use crate::project::seen::{Made, Seen};
 use crate::project::{Document, output, validate};
 use crate::scene::{Footage, FrameNumber, Progress, Scene};
 use crate::snap::{SnapOptions, snap_scene};
 use crate::track::{TrackOptions, Tracker, Tracking};
 use cache::FileCache;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
-use seen::Noted;
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -169,11 +169,24 @@ fn track_by(
     gaps::none(&frames, gaps::between_keys(&document.scene))?;
     let noted = Noted::new(&frames);
     let tracking = tracker.track(&in_effect(&document.scene), &noted, progress)?;
-    let mut seen = noted.seen();
+    store_seen(document, &tracking, noted.seen())?;
+    Ok(tracking)
+}
+
+/// Puts tracks into the document, and the marks of the pictures that were read for them.
+///
+/// # Errors
+///
+/// [`PipelineError::Field`] for an invalid field `seen`; the document is then unchanged.
+pub fn store_seen(
+    document: &mut Document,
+    tracking: &Tracking,
+    mut seen: BTreeMap<FrameNumber, Seen>,
+) -> Result<(), PipelineError> {
     seen.retain(|frame, _| tracking.parts.iter().any(|part| part.tracks.contains_key(frame)));
     document.set_seen(Made::Tracks, FrameNumber::MIN..=FrameNumber::MAX, &seen).map_err(|e| fill::field(&e))?;
-    store(&mut document.scene, &tracking);
-    Ok(tracking)
+    store(&mut document.scene, tracking);
+    Ok(())
 }
 
 /// The drawings of the footage of a document in `folder`: the first and the last frame of each. Frames that differ by noise

@@ -105,6 +105,28 @@ def test_footage_that_is_drawn_again_under_the_same_names_is_read_again(document
         assert all(math.dist(p, t) < 1.0 for p, t in zip(points[3], truth, strict=True))
 
 
+def test_tracks_have_the_marks_of_their_pictures(document, folder, tmp_path, monkeypatch):
+    """As those of the command line: so a picture that is drawn again later is named."""
+    monkeypatch.setenv("ROTOTOON_CACHE", "none")
+    for frame in FRAMES:
+        write_png(tmp_path / f"frame_{frame:03}.png", draw(frame))
+    with Session.from_document(document, tmp_path) as session:
+        session.track()
+        seen = session.document()["seen"]["tracks"]
+        tracked = {frame for part in session.document()["parts"] for frame in part["tracks"]}
+        assert set(seen) == tracked
+        # A pin solves one span again, and the marks of the others stay.
+        changed = session.document()
+        changed["parts"][0]["pins"] = {"3": {"0": [20.0, 7.0]}}
+        session.set_document(changed)
+        session.track()
+        assert session.document()["seen"]["tracks"] == seen
+        write_png(tmp_path / "frame_003.png", draw(5))
+        session.track()
+        again = session.document()["seen"]["tracks"]
+    assert {frame for frame in seen if again[frame] != seen[frame]} == {"3"}
+
+
 def test_set_document_keeps_what_is_known(session):
     session.track()
     document = session.document()

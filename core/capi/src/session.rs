@@ -12,6 +12,7 @@ use rototoon::pipeline::unchanged::Known;
 use rototoon::pipeline::{self, Kept, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
+use rototoon::project::seen::Seen;
 use rototoon::project::{Document, Inputs};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
@@ -36,6 +37,8 @@ pub struct Session {
     known: Known,
     pictures: Option<Sequence>,
     trackers: BTreeMap<&'static str, Tracker>,
+    /// The marks of the pictures that were read for tracking.
+    looked: BTreeMap<FrameNumber, Seen>,
 }
 
 /// The summary of tracking, as callers read it.
@@ -98,7 +101,7 @@ impl Session {
     fn of(document: Document, folder: &Path) -> Self {
         // An absolute folder does not depend on later changes of the working directory.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        Self { document, folder, known: Known::new(), pictures: None, trackers: BTreeMap::new() }
+        Self { document, folder, known: Known::new(), pictures: None, trackers: BTreeMap::new(), looked: BTreeMap::new() }
     }
 
     /// The document as JSON.
@@ -210,13 +213,15 @@ impl Session {
         let scene = pipeline::in_effect(&self.document.scene);
         let tracker =
             self.trackers.entry(id).or_insert_with(|| tracker(TrackOptions { preset, ..TrackOptions::default() }));
+        let noted = Noted::knowing(pictures, self.looked.clone());
         let tracking = work::run(options.number("threads") as usize, go_on, |progress: &dyn Progress| {
-            tracker.track(&scene, pictures, progress).map_err(|error| match error {
+            tracker.track(&scene, &noted, progress).map_err(|error| match error {
                 TrackError::Cancelled(_) => Failure::Cancelled,
                 other => Failure::error(other),
             })
         })?;
-        pipeline::store(&mut self.document.scene, &tracking);
+        self.looked = noted.seen();
+        pipeline::store_seen(&mut self.document, &tracking, self.looked.clone()).map_err(Failure::error)?;
         Ok(summary(&self.document.scene, &tracking, footage_changed))
     }
 
@@ -349,6 +354,7 @@ impl Session {
     pub fn forget(&mut self) {
         self.pictures = None;
         self.trackers.clear();
+        self.looked.clear();
     }
 }
 

@@ -25,14 +25,21 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Pictures, which notes those that are read.
-pub(super) struct Noted<'a> {
+#[derive(Debug)]
+pub struct Noted<'a> {
     frames: &'a Sequence,
     seen: Mutex<BTreeMap<FrameNumber, Seen>>,
 }
 
 impl<'a> Noted<'a> {
+    /// Pictures of which none was read.
     pub fn new(frames: &'a Sequence) -> Self {
-        Self { frames, seen: Mutex::default() }
+        Self::knowing(frames, BTreeMap::new())
+    }
+
+    /// Pictures of which some were read before, and are still the same.
+    pub fn knowing(frames: &'a Sequence, seen: BTreeMap<FrameNumber, Seen>) -> Self {
+        Self { frames, seen: Mutex::new(seen) }
     }
 
     /// The marks of all pictures that were read.
