@@ -101,7 +101,14 @@ impl Session {
     fn of(document: Document, folder: &Path) -> Self {
         // An absolute folder does not depend on later changes of the working directory.
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
-        Self { document, folder, known: Known::new(), pictures: None, trackers: BTreeMap::new(), looked: BTreeMap::new() }
+        Self {
+            document,
+            folder,
+            known: Known::new(),
+            pictures: None,
+            trackers: BTreeMap::new(),
+            looked: BTreeMap::new(),
+        }
     }
 
     /// The document as JSON.
