@@ -9,7 +9,7 @@ use crate::work::{self, GoOn};
 use rototoon::pictures::sequence::Sequence;
 use rototoon::pipeline::cache::FileCache;
 use rototoon::pipeline::unchanged::Known;
-use rototoon::pipeline::{self, Kept, PipelineError, TraceMemory};
+use rototoon::pipeline::{self, Kept, Noted, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::seen::Seen;
