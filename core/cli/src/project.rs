@@ -73,7 +73,7 @@ pub fn check_report(report: &Path, inputs: &Inputs, [from, to]: [&Path; 2]) -> R
             report.display()
         )));
     }
-    check_writable(report)
+    Ok(check_writable(report)?)
 }
 
 /// Writes a document that was read from `from`. A relative footage pattern is rewritten so that it names the same files. What another program wrote to the
