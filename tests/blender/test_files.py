@@ -1,7 +1,9 @@
 """Documents in and out, and Blender files saved, opened and moved."""
 
 import json
+import os
 import shutil
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -172,6 +174,28 @@ def changed(path):
 
 def names(path):
     return [part["name"] for part in json.loads(path.read_text())["parts"]]
+
+
+def test_export_without_the_ending_leaves_another_file(addon, library, tmp_path):
+    """Blender asks about the name that was typed, and not about the one with the ending."""
+    ob = shots.two_keys(addon, tmp_path)
+    other = tmp_path / "shot.json"
+    other.write_text("somebody else's document")
+    with pytest.raises(RuntimeError, match=r"a file shot\.json already, which is not this object's"):
+        bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot"))
+    assert other.read_text() == "somebody else's document"
+    bpy.ops.rototoon.export_document(filepath=str(other))
+    # The object knows the file now.
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot"))
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "fresh"))
+    assert (tmp_path / "fresh.json").exists() and ob.rototoon.known_files.count("json") == 2
+
+
+@pytest.mark.parametrize(("typed", "becomes"), [("shot", "shot.json"), ("shot.json", "shot.json"), ("shot.JSON", "shot.JSON"), ("", "")])
+def test_the_file_browser_gets_the_ending(addon, tmp_path, typed, becomes):
+    operator = SimpleNamespace(filepath=os.path.join(tmp_path, typed))
+    changed = addon("exchange.operators.export_document").ROTOTOON_OT_export_document.check(operator, None)
+    assert operator.filepath == os.path.join(tmp_path, becomes) and changed == (typed != becomes)
 
 
 def test_export_onto_a_document_that_another_program_changed(addon, library, tmp_path):
