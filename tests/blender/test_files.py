@@ -85,6 +85,33 @@ def test_import_into_the_active_object(addon, tmp_path):
     assert [f.frame_number for f in shots.layer_of(ob).frames] == list(range(9))
 
 
+@pytest.mark.parametrize("lacking", ["camera", "size", "view"])
+def test_an_import_that_has_no_place_leaves_the_object(addon, tmp_path, lacking):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.match_contours()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "in.json").write_text(json.dumps(project(tmp_path / "other")))
+    if lacking == "camera":
+        bpy.data.objects.remove(ob.rototoon.camera or bpy.context.scene.camera)
+    elif lacking == "size":
+        ob.scale = 0, 0, 0
+    else:
+        ob.rototoon.camera.data.type = "PANO"
+    bpy.context.view_layer.update()
+
+    gp = addon("blender.grease_pencil")
+
+    def state():
+        settings = ob.rototoon
+        frames = {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in gp.drawings(shots.layer_of(ob)).items()}
+        return frames, [part.name for part in settings.parts], settings.pattern, settings.frame_offset, settings.fps
+
+    before = state()
+    with pytest.raises(RuntimeError, match={"camera": "no camera", "size": "a scale of 0", "view": "is of type PANO"}[lacking]):
+        bpy.ops.rototoon.import_document(filepath=str(tmp_path / "other" / "in.json"), into="ACTIVE", keep_numbers=True)
+    assert state() == before and before[0]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
