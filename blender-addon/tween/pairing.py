@@ -14,6 +14,7 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
+from ..blender.seen import Seen
 from ..common.wording import counted, listed
 from . import keys as ks
 from . import breakdowns, doubted, pairs, records, sheets, tweening
@@ -145,7 +146,7 @@ class Pairing:
     def store(self) -> None:
         """Stores the numbers of the strokes of all keys."""
         guard.need_open(gp.find_layer(self._ob, layer.name) for layer in self._layers)
-        plan = tweening.Plan(records=records.read(self._ob.data))
+        plan = tweening.Plan(Seen(self._ob), records=records.read(self._ob.data))
         for layer in self._layers:
             record = plan.records.setdefault(layer.name, records.Layer())
             plan.frames[layer.name] = ks.frames_of(gp.find_layer(self._ob, layer.name), record)

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, projection, selection
+from ...blender import guard, projection, seen, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
@@ -71,7 +71,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
                 "No drawings to fit on these frames: choose other frames or layers, or unlock the layers. "
                 "Contours are not changed"
             )
-        self._done = []
+        self._done, self._seen = [], seen.Seen(self._ob)
         return jobs.Stepper(self._steps(), "Fitting")
 
     def _numbers(self, layer, current: int) -> list[int]:
@@ -88,6 +88,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             fitted = fitting.fit(content, self._wanted(handle, content), *self._scale(layer, content))
             if fitted is not None:
                 self._done.append((name, number, fitted))
+                self._seen.note(name, number, content)
             yield (index + 1) / len(self._drawings)
 
     def _wanted(self, handle, content: st.Content) -> np.ndarray:
@@ -113,6 +114,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
+        self._seen.need((name, number) for name, number, _ in self._done)
         with rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)

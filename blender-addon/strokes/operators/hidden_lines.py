@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, seen
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
@@ -80,7 +80,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._need_open()
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
-        self._cuts = []
+        self._cuts, self._seen = [], seen.Seen(self._ob)
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 
     def _need_open(self) -> None:
@@ -95,12 +95,13 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
-                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices))
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen))
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
+        hidden.need_unchanged(self._ob, self._cuts, self._seen)
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
         with rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
