@@ -175,7 +175,7 @@ class Pairing:
             return False
         earlier, later = sorted((first, item), key=lambda each: each.side)
         with self._change(item.layer) as hand:
-            hand.pair(earlier.index, later.index)
+            hand.pair(earlier.index, later.index, self._free_number(item.layer))
         return True
 
     def decide(self, earlier: int, later: int) -> bool:
@@ -191,7 +191,7 @@ class Pairing:
                     side = places.index(pairs.NONE)
                     hand.alone(1 - side, places[1 - side])
                 else:
-                    hand.pair(*places)
+                    hand.pair(*places, self._free_number(number))
             return True
         return False
 
@@ -221,6 +221,9 @@ class Pairing:
     def changed(self) -> bool:
         """Whether the artist has decided anything."""
         return bool(self._undo)
+
+    def _free_number(self, number: int) -> int:
+        return pairs.free_number(gp.find_layer(self._ob, self._layers[number].name))
 
     def _change(self, number: int):
         return _Change(self, number)

@@ -2,7 +2,8 @@
 library finds the others.
 
 The two strokes of an artist's pair carry the same number, one as `NEXT`, the other as `BEFORE`. So it survives when a stroke is moved,
-reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing.
+reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing. No other pair of the layer has the number, so that
+it does not meet that of another key when a key between is deleted.
 """
 
 from __future__ import annotations
@@ -81,6 +82,16 @@ def carried(content: st.Content) -> list[int]:
     return found
 
 
+def free_number(layer) -> int:
+    """The least number above those of all pairs on a layer."""
+    most = 0
+    for handle, _ in gp.drawings(layer).values():
+        for name in (gp.NEXT, gp.BEFORE):
+            if gp.has(handle, name):
+                most = max(most, int(gp.value(handle, name, len(gp.offsets(handle)) - 1).max(initial=0)))
+    return most + 1
+
+
 class Hand:
     """The artist's decisions on two neighbouring keys, stored in their drawings."""
 
@@ -101,10 +112,11 @@ class Hand:
             if len(each):
                 gp.put(handle, name, each)
 
-    def pair(self, i: int, j: int) -> None:
-        """Pairs stroke `i` of the earlier key with stroke `j` of the later key. Earlier pairs of both are removed."""
+    def pair(self, i: int, j: int, number: int) -> None:
+        """Pairs stroke `i` of the earlier key with stroke `j` of the later key, by a number that no other pair of the layer has. Earlier pairs of both
+        are removed."""
         to, of = self._without(i, j)
-        to[i] = of[j] = max(int(to.max()), int(of.max()), 0) + 1
+        to[i] = of[j] = number
         self.restore((to, of))
 
     def alone(self, side: int, index: int) -> None:

@@ -152,6 +152,19 @@ def test_scripts_pair_strokes_by_their_numbers(addon):
     assert tracks(addon, ob, 9)[1] == 1
 
 
+def test_pairs_of_other_keys_do_not_meet_when_a_key_between_is_deleted(addon):
+    ob = keyed(addon, (1, 9, 17))
+    for frame in (1, 9):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.match_strokes()
+    for frame, number in ((1, 1), (9, 2)):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.match_strokes(earlier=number, later=number)
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], [9])
+    _, found = pairing_of(addon, ob)
+    assert [(row.earlier, row.later, row.by_hand) for row in found.pairs] == [(k, k, False) for k in range(3)]
+
+
 @pytest.mark.parametrize("side", (0, 1))
 def test_scripts_say_that_a_stroke_has_no_counterpart(addon, side):
     ob = keyed(addon)
