@@ -11,7 +11,7 @@ from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined
 from ...tween import rototoon_changes
-from .. import fitting
+from .. import fitting, weights
 
 
 class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
@@ -57,6 +57,15 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     selected: bpy.props.BoolProperty(
         name="Selected Strokes Only", description="In edit mode, only strokes with a selected point", default=False
     )
+
+    def invoke(self, context, event):
+        """Called by Blender. It asks first where weights of vertex groups may be lost."""
+        if bpy.app.background or context.window is None or not weights.groups(context.object):
+            return super().invoke(context, event)
+        # The answer calls `execute`.
+        self._picked = True
+        title = "Fit strokes with weights of vertex groups?"
+        return context.window_manager.invoke_confirm(self, event, title=title, message=weights.LOST, confirm_text="Fit")
 
     def begin(self, context):
         self._ob = context.object
@@ -122,6 +131,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         strokes = sum(fitted.fitted for *_, fitted in self._done)
         if not strokes:
             return "No stroke became lighter"
+        self.warn(weights.warning(self._ob))
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
         lighter = {layer: {number for name, number, fitted in self._done if name == layer and fitted.fitted} for layer in made.frames}

@@ -11,7 +11,7 @@ from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined, listed
 from ...tween import rototoon_changes
-from .. import hidden
+from .. import hidden, weights
 
 
 BEFORE = "In-betweens that are drawn later come from the cut keys. Finish them first, or work on a copy of the object"
@@ -108,6 +108,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         self._ob.data.update_tag()
         if not drawings:
             return "Nothing is hidden"
+        self.warn(weights.warning(self._ob))
         return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
 
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
