@@ -348,29 +348,39 @@ def clear(ob, layers: Iterable, around: int | None = None) -> Cleared:
             continue
         inside = [number for number in found.made if span[0] <= number <= span[1]]
         edited = [number for number in found.edited if span[0] <= number <= span[1]]
+        known = moved_keys.drawn_now(layer, record, found)
         adopt(layer, found, edited)
         gp.remove_frames(layer, inside)
         done.removed += len(inside)
         done.kept |= set(edited)
-        _forget(record, found.keys, span)
+        if around is None:
+            record.spans.clear()
+        _forget(record, known if record.spans else [], found.keys, span)
         moved_keys.note(layer, record)
     records.write(ob.data, kept)
     ob.data.update_tag()
     return done
 
 
-def _forget(record: records.Layer, keys: list[int], cleared: tuple[float, float]) -> None:
-    """Removes the records of in-betweens from one frame to another. What is left of a span is drawn again at the next update."""
+def _forget(record: records.Layer, spans: list[tuple[int, int, records.Span]], keys: list[int], cleared: tuple[float, float]) -> None:
+    """Removes the records of in-betweens from one frame to another. `spans` are the recorded ones as they lie now (see `moved_keys.drawn_now`). What is
+    left of a span is drawn again at the next update."""
     first, last = cleared
-    for start, known in list(record.spans.items()):
+    whole, pieces = {}, {}
+    for recorded, start, known in spans:
         left = {frame: total for frame, total in known.sums.items() if not first <= frame <= last}
-        if len(left) == len(known.sums) and left:
+        apart = not known.sums and (last <= start or known.last <= first)
+        if (len(left) == len(known.sums) and left) or apart:
+            whole[start] = known
             continue
-        del record.spans[start]
+        del record.spans[recorded]
         for a, b in zip(keys, keys[1:]):
             own = {frame: total for frame, total in left.items() if a < frame < b}
             if own:
-                record.spans[a] = records.Span(b, "", known.choices.divided(start, known.last, (a, b)), own, known.marked)
+                pieces[a] = records.Span(b, "", known.choices.divided(start, known.last, (a, b)), own, known.marked)
+    if pieces:
+        # Keys have one place, so what was moved is recorded where it lies now, too.
+        record.spans = whole | pieces
 
 
 def nothing_to_draw(result: Plan) -> Problem:
