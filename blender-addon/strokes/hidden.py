@@ -54,8 +54,8 @@ class Cut:
 
 
 def is_output(layer) -> bool:
-    """Whether a layer is for hidden lines."""
-    return layer.name.endswith(SUFFIX)
+    """Whether a layer has hidden lines. A layer that only bears such a name is the artist's. Reads no array."""
+    return layer.name.endswith(SUFFIX) and any(gp.has(handle, gp.INTERVAL) for handle in gp.handles(layer))
 
 
 def frames_between(ob, first: int, last: int) -> list[int]:

@@ -62,12 +62,16 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def invoke(self, context, event):
         """Called by Blender. It asks first where in-betweens depend on drawings that it would cut."""
-        ob = context.object
-        if bpy.app.background or context.window is None or not rototoon_changes.has_own_keys(ob, st.editable_layers(ob, active=False)):
+        if bpy.app.background or context.window is None or not self._cuts_own_keys(context.object):
             return super().invoke(context, event)
         # The answer calls `execute`.
         self._picked = True
         return context.window_manager.invoke_confirm(self, event, title="Cut the keys of in-betweens?", message=BEFORE, confirm_text="Cut")
+
+    @staticmethod
+    def _cuts_own_keys(ob) -> bool:
+        """Whether a layer that would be cut has in-betweens. Closed layers are no error here: the work names them."""
+        return rototoon_changes.has_own_keys(ob, guard.open_layers(st.drawn_layers(ob, active=False)))
 
     def begin(self, context):
         self._ob, scene = context.object, context.scene
