@@ -256,10 +256,10 @@ def _pair(target, written, film: Film) -> int:
             continue
         hand = pairs.Hand(drawings[frame][0], drawings[after][0])
         if j < 0:
-            hand.alone(0, i)
+            hand.alone(0, i, number)
         else:
             hand.pair(i, j, number)
-            number += 1
+        number += 1
     return left
 
 

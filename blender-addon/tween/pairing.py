@@ -136,7 +136,7 @@ class Pairing:
         for number, (layer, each) in enumerate(zip(self._layers, found)):
             matches = layer.call.matches = each.matches
             split = len(layer.world[0])
-            marks = pairs.Hand(*layer.handles).values()
+            marks = pairs.Hand(*layer.handles).decided()
             for (kind, earlier, later, _), (_, sure) in zip(matches.rows.tolist(), matches.values.tolist()):
                 doubtful = each.held or earlier in each.strokes or later in each.strokes
                 later = later - split if later >= 0 else -1
@@ -189,7 +189,7 @@ class Pairing:
             with self._change(number) as hand:
                 if pairs.NONE in places:
                     side = places.index(pairs.NONE)
-                    hand.alone(1 - side, places[1 - side])
+                    hand.alone(1 - side, places[1 - side], self._free_number(number))
                 else:
                     hand.pair(*places, self._free_number(number))
             return True
@@ -205,7 +205,7 @@ class Pairing:
             if row is not None and row.by_hand:
                 hand.release(item.side, item.index)
             else:
-                hand.alone(item.side, item.index)
+                hand.alone(item.side, item.index, self._free_number(item.layer))
         return True
 
     def undo(self) -> bool:
@@ -232,7 +232,8 @@ class Pairing:
         """Reads the decisions again for the next `match`."""
         layer = self._layers[number]
         for contents, handle, name in zip(layer.call.sheet.contents.values(), layer.handles, (gp.NEXT, gp.BEFORE)):
-            contents[0].set_strokes(name, gp.value(handle, name, len(contents[0].sizes)))
+            for each in (name, gp.KEY):
+                contents[0].set_strokes(each, gp.value(handle, each, len(contents[0].sizes)))
         layer.call.laid = sheets.lay_out(self._ob, layer.call.sheet)
 
     # -- on the screen -----------------------------------------------------------------------------------------------

@@ -86,7 +86,7 @@ def _new_in_betweens(layer, record: records.Layer, there: set[int]) -> set[int]:
             continue
         count = len(gp.offsets(handle)) - 1
         # It shows what is held from the key before it. Decisions on that key are not its own.
-        for name in (gp.NEXT, gp.BEFORE):
+        for name in (gp.NEXT, gp.BEFORE, gp.KEY):
             if gp.has(handle, name):
                 gp.put(handle, name, np.zeros(count, np.int32))
         gp.put(handle, gp.SIDES, np.full(count, pairs.EARLIER, np.int32))
