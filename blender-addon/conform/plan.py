@@ -165,8 +165,10 @@ class Spans:
         if record is None:
             return
         record = moved_keys.followed(layer, record, found.keys).record
+        following = dict(pairwise(sorted(gp.frame_numbers(layer))))
         for first, span in record.spans.items():
-            ends = times.went(first), times.went(span.last)
+            # As in `_place`: a key whose own picture is gone is where it was held.
+            ends = [next(iter(times.went_while(key, following.get(key))), None) for key in (first, span.last)]
             if ends[0] is None or ends[1] is None or ends[0] >= ends[1]:
                 self.broken.append((first, span.last))
             else:

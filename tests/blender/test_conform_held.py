@@ -5,6 +5,7 @@ import pytest
 import shots
 from test_conform import GIVEN, delivered, film, frames, said  # noqa: F401 - fixtures
 from test_strokes import add
+from test_tween import figure
 
 ONE, TWO = [[(0, 0), (1, 0.5)]], [[(0, 0), (1, 0.5)], [(0, 1), (1, 1.5)]]
 
@@ -46,6 +47,20 @@ def test_a_drawing_on_the_picture_that_is_gone_alone_is_left_over(addon, film, d
     bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert shown(addon, film, range(1, 9)) == dict.fromkeys(range(1, 7)) | {7: 1, 8: 1}
     assert any('layer "Lines": the drawing on 7: left over' in text for text in said(addon).warnings)
+
+
+def test_in_betweens_go_along_with_a_key_that_is_held(addon, film, delivered):  # noqa: F811
+    film.data.layers.new("Lines")
+    add(addon, film, "Lines", 1, figure())
+    add(addon, film, "Lines", 7, figure(0.3, 0.1))
+    film.data.layers.active = film.data.layers["Lines"]
+    bpy.ops.rototoon.in_between(frames="ALL")
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
+    assert not any("in-betweens" in text for text in said(addon).warnings)
+    found = addon("tween.keys").frames_of(film.data.layers["Lines"], addon("tween.records").read(film.data)["Lines"])
+    assert (found.keys, found.made) == ([1, 7], [2, 3, 4, 5, 6])
+    spans = addon("tween.records").read(film.data)["Lines"].spans
+    assert {first: span.last for first, span in spans.items()} == {1: 7}
 
 
 @pytest.fixture
