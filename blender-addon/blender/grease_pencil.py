@@ -66,10 +66,12 @@ FIELDS = "rototoon_fields"
 TWEENED = "rototoon_tweened"
 """Whether the stroke is an in-between."""
 NEXT = "rototoon_next"
-"""The artist's decision on a stroke's counterpart on the next key: the number of the pair; -1 for no counterpart; 0 if there is no
-decision."""
+"""The artist's decision on a stroke's counterpart on the next key: the number of the pair; -1 - n for no counterpart on the key with the number n;
+-1 for no counterpart on any key, as earlier versions wrote it; 0 if there is no decision."""
 BEFORE = "rototoon_before"
 """The same for the key before. Two strokes are a pair if the `NEXT` of one is the `BEFORE` of the other on the next key."""
+KEY = "rototoon_key"
+"""The number of a key, the same on all its strokes, where strokes of a neighbour have no counterpart on it; 0 for none, and on strokes drawn since."""
 SIDES = "rototoon_sides"
 """On which of its two keys a stroke of an in-between has a counterpart of its number: 1 for the earlier one, 2 for the later one, added; 0 for a
 stroke that was drawn since. A breakdown that was an in-between keeps it."""
@@ -88,6 +90,7 @@ TYPES = {
     TWEENED: ("BOOLEAN", "CURVE"),
     NEXT: ("INT", "CURVE"),
     BEFORE: ("INT", "CURVE"),
+    KEY: ("INT", "CURVE"),
     SIDES: ("INT", "CURVE"),
     OFF_INK: ("BOOLEAN", "CURVE"),
     "fill_opacity": ("FLOAT", "CURVE"),

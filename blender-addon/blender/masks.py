@@ -30,6 +30,8 @@ class Outline:
     closed: bool
     frames: dict[int, np.ndarray]
     """Pixels (N, 2) by scene frame, in time order."""
+    hidden: frozenset[int] = frozenset()
+    """Scene frames on which the part is hidden: Blender would blend the contours around them."""
 
 
 def to_mask(pixels: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -65,7 +67,7 @@ def write(context, name: str, parts: list[Outline], width: int, height: int) -> 
         for frame in every:
             _key(context.scene, mask, parts, frame, (width, height))
     for layer, part in zip(mask.layers, parts, strict=True):
-        _lifetime(layer, min(part.frames), max(part.frames), every[0], every[-1])
+        _lifetime(layer, part, every[0], every[-1])
     return mask
 
 
@@ -95,13 +97,18 @@ def _key(scene, mask, parts: list[Outline], frame: int, size: tuple[int, int]) -
         raise Problem(f"Blender did not key the mask on frame {frame}")
 
 
-def _lifetime(layer, first: int, last: int, begin: int, end: int) -> None:
-    """Shows a layer from frame `first` to `last` only; `begin` and `end` are the mask's frames."""
-    if (first, last) == (begin, end):
+def _lifetime(layer, part: Outline, begin: int, end: int) -> None:
+    """Shows a layer from the first to the last frame of its part only, and not where it is hidden; `begin` and `end` are the mask's frames."""
+    first, last = min(part.frames), max(part.frames)
+    shown = {frame: float(frame not in part.hidden) for frame in range(first, last + 1)}
+    if all(shown.values()) and (first, last) == (begin, end):
         return
-    for frame, alpha in ((first - 1, 0.0), (first, 1.0), (last, 1.0), (last + 1, 0.0)):
-        layer.alpha = alpha
-        layer.keyframe_insert("alpha", frame=frame)
+    shown |= {first - 1: 0.0, last + 1: 0.0}
+    # Keys on both sides of each change: what lies between them is even.
+    for frame, alpha in sorted(shown.items()):
+        if any(shown.get(beside, alpha) != alpha for beside in (frame - 1, frame + 1)):
+            layer.alpha = alpha
+            layer.keyframe_insert("alpha", frame=frame)
 
 
 @contextmanager

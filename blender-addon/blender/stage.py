@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import bpy
@@ -12,11 +14,14 @@ from mathutils import Matrix
 from . import camera as cameras
 from . import footage, guard, placement
 from . import grease_pencil as gp
+from .errors import Problem
 
 WIDTH = 10.0
 """Width of a new camera's frame or reference image in scene units. Blender's brushes suit this size."""
 DISTANCE = 10.0
 """Distance of a new camera from the drawing plane."""
+_FOOTAGE = ("pattern", "movie", "first", "last", "width", "height", "fps", "hold_gaps", "frame_offset")
+"""The settings that `assign` changes."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,20 @@ def assign(ob, shot: Shot) -> None:
     settings.fps = shot.fps
     settings.hold_gaps = shot.hold_gaps
     settings.frame_offset = shot.frame_of_first - shot.first
+
+
+@contextmanager
+def tried(ob, shot: Shot) -> Iterator[None]:
+    """Gives an object its footage. If what is done with it raises a `Problem`, the object has its old footage again."""
+    settings = ob.rototoon
+    before = {name: getattr(settings, name) for name in _FOOTAGE}
+    assign(ob, shot)
+    try:
+        yield
+    except Problem:
+        for name, value in before.items():
+            setattr(settings, name, value)
+        raise
 
 
 def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.types.Object:

@@ -224,6 +224,14 @@ class Long(Reporting):
 
     def modal(self, context, event):
         """Called by Blender."""
+        try:
+            return self._on(context, event)
+        except BaseException:
+            # Nothing of the work may go on after an error that nobody foresaw.
+            self._close(context)
+            raise
+
+    def _on(self, context, event):
         if self._undone.happened:
             self._close(context)
             self._say("WARNING", f"{self.bl_label}: stopped, since something was undone meanwhile")

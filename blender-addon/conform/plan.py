@@ -4,7 +4,8 @@ A drawing is the artist's if its frame is no generated one, if it has a stroke o
 pin or a moved point says so. It goes to one frame, also if its picture was drawn again, since only the artist can say whether it still fits. On such
 a frame, generated contours without a correction are left out, for Track makes them again. Of two drawings that meet on one frame, the one whose own
 frame it is stays there. Contours of the other one join it if it has none of their part, as where one key was drawn on each of two frames with one
-picture. The rest, and a drawing whose picture is gone, is left over.
+picture. The rest, and a drawing whose picture is gone, is left over. On layers without contours a drawing is held until the next one, so it goes to the
+first picture on which it is held where its own is gone or has another drawing. An empty one, which ends the drawing before it, gives way to any other.
 
 A generated drawing goes to all frames that show its picture as it was, or that of a frame on which it was held. Contours get a drawing on each of
 them; on other layers neighbouring frames hold the first one. Where a new drawing follows, or one that was drawn again, an empty generated drawing
@@ -18,6 +19,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -163,8 +165,10 @@ class Spans:
         if record is None:
             return
         record = moved_keys.followed(layer, record, found.keys).record
+        following = dict(pairwise(sorted(gp.frame_numbers(layer))))
         for first, span in record.spans.items():
-            ends = times.went(first), times.went(span.last)
+            # As in `_place`: a key whose own picture is gone is where it was held.
+            ends = [next(iter(times.went_while(key, following.get(key))), None) for key in (first, span.last)]
             if ends[0] is None or ends[1] is None or ends[0] >= ends[1]:
                 self.broken.append((first, span.last))
             else:
@@ -224,10 +228,14 @@ def _place(ob, name: str, drawings: list[Drawing], spans: Spans, times: Times, c
     taken: set[int] = set()
     held: set[int] = set()
     numbers: dict[int, set[int]] = {}
-    for drawing in sorted(drawings, key=lambda each: (not each.artists, not times.has_own(each.frame), each.frame)):
+    following = {one.frame: other.frame for one, other in pairwise(sorted(drawings, key=lambda each: each.frame))}
+    for drawing in sorted(drawings, key=lambda each: (not each.artists, each.blank and not contoured, not times.has_own(each.frame), each.frame)):
         if layers.is_left_over(name):
             new = times.went(drawing.frame)
             wanted = [drawing.frame + times.shift if new is None else new]
+        elif drawing.artists and not contoured:
+            free = [new for new in times.went_while(drawing.frame, following.get(drawing.frame)) if new not in taken]
+            wanted = free[:1]
         elif drawing.artists or drawing.frame in spans.made:
             new = times.went(drawing.frame) if drawing.artists else spans.target(drawing.frame, times)
             wanted = [] if new is None else [new]

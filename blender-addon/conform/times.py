@@ -47,6 +47,14 @@ class Times:
         end = min(self._went) if frame < first else max(self._went)
         return self._went[end] + frame - end
 
+    def went_while(self, frame: int, before: int | None) -> list[int]:
+        """Where the artist's work on an old frame may go that is shown until the frame `before`, or to the end of the footage: first where its own
+        picture is, then where the pictures are on which it is held, rising."""
+        own, last = self.went(frame), self._old.last + self._old.offset
+        held = range(max(frame + 1, self._old.first + self._old.offset), min(last + 1, last + 1 if before is None else before))
+        others = {new for each in held if (new := self.went(each)) is not None}
+        return [*([] if own is None else [own]), *sorted(others - {own})]
+
     def has_own(self, frame: int) -> bool:
         """Whether an old frame goes to a frame of its own, and not to another one that shows the same drawing."""
         return frame in self._own or not self._old.first <= frame - self._old.offset <= self._old.last

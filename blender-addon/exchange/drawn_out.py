@@ -113,6 +113,7 @@ class OfLayer:
         mapper, palette = placement.Mapper(ob, contents, {}, [name], size), colours.palette(ob)
         self._keys = sorted(keys)
         layer = gp.find_layer(ob, self._drawn.name)
+        self._ends = gp.ends(layer)
         self._record = moved_keys.followed(layer, self._record, self._keys).record
         for frame, marks in breakdowns.passed_on(layer, self._keys, self._adopted).items():
             for attribute, values in marks.values().items() if frame in self._drawn.keys else ():
@@ -202,8 +203,9 @@ class OfLayer:
         return next((key for key in self._keys if key > frame), None)
 
     def _shown_on(self, frame: int) -> int | None:
-        """The frame of the drawing that the layer shows on a frame."""
-        return max((each for each in self._sheets if each <= frame), default=None)
+        """The frame of the drawing that the layer shows on a frame; `None` also where a drawing has ended by itself."""
+        drawn = max((each for each in self._sheets if each <= frame), default=None)
+        return None if drawn is None or any(drawn < end <= frame for end in self._ends) else drawn
 
     def shown_as_traced(self, frame: int) -> list[dict[str, Any]]:
         """The strokes that the layer shows on a frame, in the form of traced ones."""

@@ -39,6 +39,11 @@ def note(ob, path: str, held: str) -> None:
         ob.rototoon.known_files = json.dumps(kept.fields(ob.rototoon.known_files) | {_real(path): held})
 
 
+def is_known(ob, path: str) -> bool:
+    """Whether the object was read from a file, or written to it."""
+    return _real(path) in kept.fields(ob.rototoon.known_files)
+
+
 def save(ob, path: str, document: dict[str, Any]) -> None:
     """Writes a document of an object. If another program wrote the file after the object was read from it or written to it, the file stays as it is,
     and an error names the new file beside it that has the document."""

@@ -6,7 +6,8 @@ import numpy as np
 from rototoon.documents import by_frame
 
 from ..blender.masks import Outline
-from ..capture import snapping
+from ..capture import absence, snapping
+from ..common import kept
 
 SPACING = 4.0
 """Distance between the points of snapped lines, in pixels of the picture."""
@@ -27,8 +28,14 @@ def outlines(document: dict, offset: int, snapped: bool) -> list[Outline]:
             if len(points[frame])
         }
         if frames:
-            found.append(Outline(part["name"], part["closed"], frames))
+            absent = {frame + offset for first, last in kept.pairs(part.get(absence.FIELD, []), int) for frame in _inside(first, last, points)}
+            found.append(Outline(part["name"], part["closed"], frames, frozenset(absent - frames.keys())))
     return found
+
+
+def _inside(first: int, last: int, points: dict[int, list]) -> range:
+    """The frames of a time between the first and the last contour."""
+    return range(max(first, min(points)), min(last, max(points)) + 1)
 
 
 def _complete(curves: dict[int, list], points: dict[int, list], closed: bool) -> dict[int, list]:

@@ -2,7 +2,7 @@
 
 What the artist changed meanwhile stays. A span of a part, from a key to the next, is taken only if both keys are as they were sent, no
 key came between, and its corrections are the same. Of a part with a single key, the whole track is such a span. On all other frames
-the contours stay as they are; Track makes them anew.
+the contours stay as they are; Track makes them anew. Where the artist has said meanwhile that a part is hidden, it stays hidden.
 
 Locked layers are not written, as with Track.
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from rototoon.documents import by_frame
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
-from ..capture import contours, document, ends, exchanged, identity, sessions, snapping, tracking, unseen, writing
+from ..capture import absence, contours, document, ends, exchanged, identity, sessions, snapping, tracking, unseen, writing
 from ..capture.document import Reading
 from ..exchange import files
 from ..exchange.fields import wrong
@@ -61,6 +61,8 @@ class Taken:
     contours: int = 0
     kept: dict[str, list[int]] = field(default_factory=dict)
     """By part the frames of results that were not taken, since the artist changed something."""
+    hidden: dict[str, list[int]] = field(default_factory=dict)
+    """By part the frames of results that were not taken, since the artist has said that the part is hidden there."""
     left: str = ""
     """Layers that were left as they were."""
     edited: list[int] = field(default_factory=list)
@@ -151,8 +153,11 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
         spans = same_spans(entry, now[part.name])
         offset = ob.rototoon.frame_offset
         results = {int(frame) + offset for frame in entry.get("tracks", {})} - part.keys.keys()
-        frames[part.number] = {frame for frame in results if any(a <= frame - offset <= b for a, b in spans)}
-        kept = sorted(results - frames[part.number])
+        same = {frame for frame in results if any(a <= frame - offset <= b for a, b in spans)}
+        frames[part.number] = same - _hidden(ob, part.number, same)
+        if same - frames[part.number]:
+            taken.hidden[part.name] = sorted(same - frames[part.number])
+        kept = sorted(results - same)
         if kept:
             taken.kept[part.name] = kept
         track = _merged(part, entry, frames[part.number], reading, offset)
@@ -176,6 +181,13 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     sessions.drop(ob)
     ob.data.update_tag()
     return taken
+
+
+def _hidden(ob, number: int, frames: Iterable[int]) -> set[int]:
+    """The frames on which the artist says that a part is hidden."""
+    item = next((item for item in ob.rototoon.parts if item.number == number), None)
+    offset = ob.rototoon.frame_offset
+    return {frame for frame in frames if item is not None and absence.is_hidden(item, frame - offset)}
 
 
 def need_same_footage(ob, now: Mapping[str, Any], sent: Mapping[str, Any], names: Sequence[str] = ("width", "height")) -> None:

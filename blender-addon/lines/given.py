@@ -245,7 +245,7 @@ def _tint(rows: stroke_rows.Rows, strokes: list[tracing.Placed], shown: list[Ink
 def _pair(target, written, film: Film) -> int:
     """Stores the pairs that the artist made on the strokes of neighbouring keys. Returns how many are left out, because a drawing of the
     artist's own is in the place of one of the two."""
-    left = 0
+    left, number = 0, pairs.free_number(target)
     drawings, frames = gp.drawings(target), sorted(film.keys)
     following = dict(zip(frames, frames[1:]))
     for frame, i, j in film.pairs:
@@ -256,9 +256,10 @@ def _pair(target, written, film: Film) -> int:
             continue
         hand = pairs.Hand(drawings[frame][0], drawings[after][0])
         if j < 0:
-            hand.alone(0, i)
+            hand.alone(0, i, number)
         else:
-            hand.pair(i, j)
+            hand.pair(i, j, number)
+        number += 1
     return left
 
 

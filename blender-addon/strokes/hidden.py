@@ -20,6 +20,7 @@ from ..blender import grease_pencil as gp
 from ..blender import guard, hierarchy, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
+from ..blender.seen import Seen, changed
 
 SUFFIX = hierarchy.ASIDE
 """Suffix of the name of a layer with hidden lines."""
@@ -53,8 +54,8 @@ class Cut:
 
 
 def is_output(layer) -> bool:
-    """Whether a layer is for hidden lines."""
-    return layer.name.endswith(SUFFIX)
+    """Whether a layer has hidden lines. A layer that only bears such a name is the artist's. Reads no array."""
+    return layer.name.endswith(SUFFIX) and any(gp.has(handle, gp.INTERVAL) for handle in gp.handles(layer))
 
 
 def frames_between(ob, first: int, last: int) -> list[int]:
@@ -65,14 +66,15 @@ def frames_between(ob, first: int, last: int) -> list[int]:
     return sorted({first, *(number for number in numbers if first < number <= last)})
 
 
-def cut_frame(ob, frame: int, choices: Choices) -> Iterator[Cut]:
-    """The drawings of the current frame `frame`, without hidden lines."""
+def cut_frame(ob, frame: int, choices: Choices, seen: Seen) -> Iterator[Cut]:
+    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`."""
     scene = _Scene(ob, frame, choices)
     found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
     may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
     for entry in scene.entries:
         if entry.layer.name in may_change:
+            seen.note(entry.layer.name, entry.source, entry.content)
             yield _cut(ob, frame, entry, pieces)
 
 
@@ -294,6 +296,16 @@ def own(ob, cuts: list[Cut], in_place: bool) -> dict[str, set[int]]:
             found.setdefault(each.layer, set()).add(each.source)
     kinds = {name: gp.drawings(gp.find_layer(ob, name)) for name in found}
     return {name: mine for name, frames in found.items() if (mine := {frame for frame in frames if kinds[name][frame][1] != gp.GENERATED})}
+
+
+def need_unchanged(ob, cuts: list[Cut], seen: Seen) -> None:
+    """Raises a `Problem` if a drawing that `write` will cut, or copy, is another one now, or another one is shown in its place."""
+    names = {each.layer for each in cuts if each.changed}
+    mine = [each for each in cuts if each.layer in names]
+    seen.need((each.layer, each.source) for each in mine)
+    for each in mine:
+        if st.shown_frame(gp.find_layer(ob, each.layer), each.frame) != each.source:
+            raise changed(each.layer, each.frame)
 
 
 def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:

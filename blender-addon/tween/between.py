@@ -337,7 +337,7 @@ def _begin(handle, block: Block, tracks: np.ndarray) -> None:
     count = len(block.content.sizes)
     if not block.alike:
         st.write(handle, block.content)
-    for name in (gp.NEXT, gp.BEFORE):
+    for name in (gp.NEXT, gp.BEFORE, gp.KEY):
         if gp.has(handle, name):
             gp.put(handle, name, np.zeros(count, np.int32))
     for name in (*block.ends, *block.changing):

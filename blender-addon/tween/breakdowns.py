@@ -35,6 +35,7 @@ class Marks:
     next: np.ndarray
     before: np.ndarray
     sides: np.ndarray
+    key: np.ndarray
 
     def find(self, number: int, side: int) -> int | None:
         """The stroke with a number that has a counterpart on a side."""
@@ -88,12 +89,12 @@ def _chains(keys: list[int], mine: set[int]) -> Iterable[list[int]]:
 
 def _read(handle, edited: bool) -> Marks:
     count = len(gp.offsets(handle)) - 1
-    track, after, before, noted = (gp.value(handle, name, count).copy() for name in (gp.TRACK, gp.NEXT, gp.BEFORE, gp.SIDES))
+    track, after, before, noted, key = (gp.value(handle, name, count).copy() for name in (gp.TRACK, gp.NEXT, gp.BEFORE, gp.SIDES, gp.KEY))
     if edited and not gp.has(handle, gp.SIDES):
         _, place, often = np.unique(track, return_inverse=True, return_counts=True)
         single = often[place] == 1 if count else np.zeros(0, bool)
         noted = np.where(gp.value(handle, gp.TWEENED, count) & single, EARLIER + LATER, 0).astype(np.int32)
-    return Marks(track, after, before, noted)
+    return Marks(track, after, before, noted, key)
 
 
 def _pass(first: Marks, *rest: Marks) -> None:
@@ -103,9 +104,9 @@ def _pass(first: Marks, *rest: Marks) -> None:
         j = np.flatnonzero(last.before == first.next[i])
         if len(j):
             _link(first, last, between, int(i), int(j[0]))
-    for i in np.flatnonzero(first.next == pairs.NONE):
+    for i in np.flatnonzero(pairs.without(first.next, last.key)):
         _alone(first.next, int(i), int(first.track[i]), [(each, each.next, EARLIER) for each in between])
-    for j in np.flatnonzero(last.before == pairs.NONE):
+    for j in np.flatnonzero(pairs.without(last.before, first.key)):
         _alone(last.before, int(j), int(last.track[j]), [(each, each.before, LATER) for each in reversed(between)])
 
 
@@ -126,5 +127,5 @@ def _alone(own: np.ndarray, index: int, number: int, between) -> None:
         k = marks.find(number, side)
         if k is None or values[k]:
             return
-        own[index], values[k] = 0, pairs.NONE
+        own[index], values[k] = 0, own[index]
         own, index = values, k

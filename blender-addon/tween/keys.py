@@ -13,7 +13,7 @@ from ..blender import marks
 from ..blender import strokes as st
 from . import records
 
-OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE, gp.SIDES, gp.MARK, gp.OFF_INK}
+OURS = {gp.TRACK, gp.TWEENED, gp.NEXT, gp.BEFORE, gp.KEY, gp.SIDES, gp.MARK, gp.OFF_INK}
 """Attributes that do not affect the look of a stroke."""
 
 

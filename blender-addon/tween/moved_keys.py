@@ -40,6 +40,8 @@ class Followed:
     """A layer's record between the frames that its keys have now."""
 
     record: records.Layer
+    origin: dict[int, int] = field(default_factory=dict)
+    """By the first frame of each of its spans the one under which it is recorded."""
     moved: list[tuple[tuple[int, int], set[int]]] = field(default_factory=list)
     """Spans that have other frames now, each with the frames on which its in-betweens were drawn."""
 
@@ -65,11 +67,25 @@ def followed(layer, record: records.Layer, keys: list[int]) -> Followed:
     for first, span, by in half:
         # One of its keys is gone. The rest of it goes along with the other one.
         spans.setdefault(first + by, (first, replace(span, last=span.last + by)))
-    found = Followed(records.Layer(record.next_track, {now: span for now, (_, span) in sorted(spans.items())}))
+    layout = {now: span for now, (_, span) in sorted(spans.items())}
+    found = Followed(records.Layer(record.next_track, layout), {now: first for now, (first, _) in spans.items()})
     for now, (first, span) in spans.items():
         if (now, span.last) != (first, record.spans[first].last):
             found.moved.append(((now, span.last), set(span.sums)))
     return found
+
+
+def drawn_now(layer, record: records.Layer, found: ks.Frames) -> list[tuple[int, int, records.Span]]:
+    """The spans of a record as they lie now: the frame under which each is recorded, its first frame, and the span with the frames that its in-betweens
+    have now."""
+    known = followed(layer, record, found.keys)
+    spans = []
+    for now, span in known.record.spans.items():
+        first = known.origin[now]
+        if (now, span.last) != (first, record.spans[first].last):
+            span = replace(span, sums=sums_of(layer, [frame for frame in found.made if now < frame < span.last]))
+        spans.append((first, now, span))
+    return spans
 
 
 def note(layer, record: records.Layer) -> None:

@@ -14,6 +14,7 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, stroke_lines
 from ..blender import strokes as st
+from ..blender.seen import Seen
 from ..common.wording import counted, listed
 from . import keys as ks
 from . import breakdowns, doubted, pairs, records, sheets, tweening
@@ -135,7 +136,7 @@ class Pairing:
         for number, (layer, each) in enumerate(zip(self._layers, found)):
             matches = layer.call.matches = each.matches
             split = len(layer.world[0])
-            marks = pairs.Hand(*layer.handles).values()
+            marks = pairs.Hand(*layer.handles).decided()
             for (kind, earlier, later, _), (_, sure) in zip(matches.rows.tolist(), matches.values.tolist()):
                 doubtful = each.held or earlier in each.strokes or later in each.strokes
                 later = later - split if later >= 0 else -1
@@ -145,7 +146,7 @@ class Pairing:
     def store(self) -> None:
         """Stores the numbers of the strokes of all keys."""
         guard.need_open(gp.find_layer(self._ob, layer.name) for layer in self._layers)
-        plan = tweening.Plan(records=records.read(self._ob.data))
+        plan = tweening.Plan(Seen(self._ob), records=records.read(self._ob.data))
         for layer in self._layers:
             record = plan.records.setdefault(layer.name, records.Layer())
             plan.frames[layer.name] = ks.frames_of(gp.find_layer(self._ob, layer.name), record)
@@ -174,7 +175,7 @@ class Pairing:
             return False
         earlier, later = sorted((first, item), key=lambda each: each.side)
         with self._change(item.layer) as hand:
-            hand.pair(earlier.index, later.index)
+            hand.pair(earlier.index, later.index, self._free_number(item.layer))
         return True
 
     def decide(self, earlier: int, later: int) -> bool:
@@ -188,9 +189,9 @@ class Pairing:
             with self._change(number) as hand:
                 if pairs.NONE in places:
                     side = places.index(pairs.NONE)
-                    hand.alone(1 - side, places[1 - side])
+                    hand.alone(1 - side, places[1 - side], self._free_number(number))
                 else:
-                    hand.pair(*places)
+                    hand.pair(*places, self._free_number(number))
             return True
         return False
 
@@ -204,7 +205,7 @@ class Pairing:
             if row is not None and row.by_hand:
                 hand.release(item.side, item.index)
             else:
-                hand.alone(item.side, item.index)
+                hand.alone(item.side, item.index, self._free_number(item.layer))
         return True
 
     def undo(self) -> bool:
@@ -221,6 +222,9 @@ class Pairing:
         """Whether the artist has decided anything."""
         return bool(self._undo)
 
+    def _free_number(self, number: int) -> int:
+        return pairs.free_number(gp.find_layer(self._ob, self._layers[number].name))
+
     def _change(self, number: int):
         return _Change(self, number)
 
@@ -228,7 +232,8 @@ class Pairing:
         """Reads the decisions again for the next `match`."""
         layer = self._layers[number]
         for contents, handle, name in zip(layer.call.sheet.contents.values(), layer.handles, (gp.NEXT, gp.BEFORE)):
-            contents[0].set_strokes(name, gp.value(handle, name, len(contents[0].sizes)))
+            for each in (name, gp.KEY):
+                contents[0].set_strokes(each, gp.value(handle, each, len(contents[0].sizes)))
         layer.call.laid = sheets.lay_out(self._ob, layer.call.sheet)
 
     # -- on the screen -----------------------------------------------------------------------------------------------

@@ -2,7 +2,11 @@
 library finds the others.
 
 The two strokes of an artist's pair carry the same number, one as `NEXT`, the other as `BEFORE`. So it survives when a stroke is moved,
-reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing.
+reordered or copied, or when its neighbours are deleted. A number without a counterpart means nothing. No other pair of the layer has the number, so that
+it does not meet that of another key when a key between is deleted.
+
+"No counterpart" is said of one key. So the key gets a number (`KEY`) that the stroke carries too. It means nothing where another key is the neighbour, as
+one that is drawn between the two later.
 """
 
 from __future__ import annotations
@@ -23,13 +27,19 @@ def between(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
     to, of = earlier.strokes(gp.NEXT), later.strokes(gp.BEFORE)
     found = {int(number): j for j, number in reversed(list(enumerate(of))) if number > 0}
     pairs = []
+    alone, alone_later = without(to, later.strokes(gp.KEY)), without(of, earlier.strokes(gp.KEY))
     for i, number in enumerate(to.tolist()):
-        if number == NONE:
+        if alone[i]:
             pairs.append((i, NONE))
         elif number > 0 and number in found:
             pairs.append((i, found.pop(number)))
-    pairs.extend((NONE, int(j)) for j in np.flatnonzero(of == NONE))
+    pairs.extend((NONE, int(j)) for j in np.flatnonzero(alone_later))
     return pairs
+
+
+def without(values: np.ndarray, keys: np.ndarray) -> np.ndarray:
+    """Which strokes have no counterpart on a neighbour, by their values of `NEXT` or `BEFORE` and the neighbour's values of `KEY`."""
+    return (values == NONE) | (values < NONE) & np.isin(NONE - values, keys)
 
 
 def given(earlier: st.Content, later: st.Content) -> list[tuple[int, int]]:
@@ -81,6 +91,16 @@ def carried(content: st.Content) -> list[int]:
     return found
 
 
+def free_number(layer) -> int:
+    """A number that no pair and no key of a layer has."""
+    most = 0
+    for handle, _ in gp.drawings(layer).values():
+        for name in (gp.NEXT, gp.BEFORE, gp.KEY):
+            if gp.has(handle, name):
+                most = max(most, int(np.abs(gp.value(handle, name, len(gp.offsets(handle)) - 1)).max(initial=0)))
+    return most + 1
+
+
 class Hand:
     """The artist's decisions on two neighbouring keys, stored in their drawings."""
 
@@ -91,9 +111,18 @@ class Hand:
 
     def values(self) -> tuple[np.ndarray, np.ndarray]:
         """The marks of the strokes of both drawings."""
-        counts = [len(gp.offsets(handle)) - 1 for handle in self._handles]
-        found = [gp.value(h, name, n) for h, name, n in zip(self._handles, self._names, counts)]
-        return found[0], found[1]
+        to, of = (gp.value(handle, name, self._count(side)) for side, (handle, name) in enumerate(zip(self._handles, self._names)))
+        return to, of
+
+    def decided(self) -> tuple[np.ndarray, np.ndarray]:
+        """The marks that count between these two drawings: the number of a pair, or `NONE`."""
+        values = self.values()
+        keys = [gp.value(handle, gp.KEY, self._count(side)) for side, handle in enumerate(self._handles)]
+        to, of = (np.where(without(own, other), NONE, np.maximum(own, 0)) for own, other in zip(values, reversed(keys)))
+        return to, of
+
+    def _count(self, side: int) -> int:
+        return len(gp.offsets(self._handles[side])) - 1
 
     def restore(self, values: tuple[np.ndarray, np.ndarray]) -> None:
         """Restores the result of `values`."""
@@ -101,17 +130,29 @@ class Hand:
             if len(each):
                 gp.put(handle, name, each)
 
-    def pair(self, i: int, j: int) -> None:
-        """Pairs stroke `i` of the earlier key with stroke `j` of the later key. Earlier pairs of both are removed."""
+    def pair(self, i: int, j: int, number: int) -> None:
+        """Pairs stroke `i` of the earlier key with stroke `j` of the later key, by a number that no other pair of the layer has. Earlier pairs of both
+        are removed."""
         to, of = self._without(i, j)
-        to[i] = of[j] = max(int(to.max()), int(of.max()), 0) + 1
+        to[i] = of[j] = number
         self.restore((to, of))
 
-    def alone(self, side: int, index: int) -> None:
-        """Marks a stroke as without a counterpart. Side 0 is the earlier key."""
+    def alone(self, side: int, index: int, number: int) -> None:
+        """Marks a stroke as without a counterpart on the other key. Side 0 is the earlier key. The other key gets a number, if it has none yet: `number`,
+        which nothing else on the layer has."""
         values = self._without(*((index, None) if side == 0 else (None, index)))
-        values[side][index] = NONE
+        values[side][index] = NONE - self._key(1 - side, number)
         self.restore(values)
+
+    def _key(self, side: int, number: int) -> int:
+        """The number of a key; 0 for a drawing without strokes, which keeps none."""
+        known = gp.value(self._handles[side], gp.KEY, self._count(side))
+        if not len(known):
+            return 0
+        number = int(known.max()) or number
+        if (known != number).any():
+            gp.put(self._handles[side], gp.KEY, np.full(len(known), number, np.int32))
+        return number
 
     def release(self, side: int, index: int) -> None:
         """Takes back the decision on a stroke."""

@@ -4,17 +4,22 @@ The records are one JSON text on the Grease Pencil data. For each layer it has t
 frame of the earlier key. A span has its last frame, a digest of everything from which it was drawn, the artist's choices, and checksums of the
 points of its keys and of each drawing. Those of the keys say where a key is that was moved in time (see `moved_keys`). Whether the artist has
 changed a drawing shows in its mark (see `blender.marks`), and in files of earlier versions in its checksum.
+
+An artist may give a layer another name, or double it. So a layer that has in-betweens and no spans gets those of the record that has checksums of its
+drawings: all of it, if the layer of that name has no in-betweens, otherwise a copy.
 """
 
 from __future__ import annotations
 
 import json
 import zlib
+from copy import deepcopy
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..blender import grease_pencil as gp
 from .charts import Choices
 
 PROPERTY = "rototoon_tween"
@@ -66,12 +71,40 @@ class Layer:
 
 
 def read(data) -> dict[str, Layer]:
-    """The records of a data-block by layer; none if the text cannot be read."""
+    """The records of a data-block by layer, under the names that the layers have now; none if the text cannot be read."""
     try:
         kept = json.loads(data.get(PROPERTY, "{}"))
-        return {name: _layer(each) for name, each in kept.items()}
+        known = {name: _layer(each) for name, each in kept.items()}
     except (ValueError, TypeError, KeyError, AttributeError):
         return {}
+    return _under_new_names(data, known)
+
+
+def _under_new_names(data, known: dict[str, Layer]) -> dict[str, Layer]:
+    sums = {name: {total for span in layer.spans.values() for total in span.sums.values()} for name, layer in known.items() if layer.spans}
+    strangers = [layer.name for layer in data.layers if layer.name not in sums and _has_in_betweens(layer)] if sums else []
+    if not strangers:
+        return known
+    left = {name for name in sums if (layer := gp.find_layer_of(data, name)) is None or not _has_in_betweens(layer)}
+    with gp.copied(data) as copy:
+        for name in strangers:
+            drawn = {checksum(gp.positions(handle, int(gp.offsets(handle)[-1]))) for handle in gp.handles(gp.find_layer_of(copy, name), gp.GENERATED)}
+            # A layer that is gone, or has lost its in-betweens, has another name now; only then is one with in-betweens the double of another.
+            best = max(sums, key=lambda each: (len(sums[each] & drawn), each in left))
+            if not sums[best] & drawn:
+                continue
+            known[name] = deepcopy(known[best])
+            if best in left:
+                del known[best], sums[best]
+                left.discard(best)
+            if not sums:
+                break
+    return known
+
+
+def _has_in_betweens(layer) -> bool:
+    """Whether a layer has in-betweens. Reads no array."""
+    return any(gp.has(handle, gp.TWEENED) for handle in gp.handles(layer, gp.GENERATED))
 
 
 def _layer(kept: dict[str, Any]) -> Layer:

@@ -21,6 +21,7 @@ from rototoon import Strokes, tween
 from ..blender import colours, drawn_plane
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
+from ..blender.seen import Seen
 from . import breakdowns, pairs
 from . import keys as ks
 from .charts import Choices
@@ -149,13 +150,14 @@ class Sheet:
         """For each layer the pairs that need not be found: the artist's, and those of carried strokes."""
         return [pairs.given(a, b) for a, b in zip(self.contents[span], self.contents[span + 1])]
 
-    def read(self, ob, marks: dict[str, dict[int, breakdowns.Marks]]) -> None:
+    def read(self, ob, marks: dict[str, dict[int, breakdowns.Marks]], seen: Seen) -> None:
         """Reads the drawings for the wanted spans, and makes the digest of each span. `marks` are those that `finish` will write, by layer and
-        frame."""
+        frame. What was read is noted in `seen`."""
         drawings = [gp.drawings(gp.find_layer(ob, name)) for name in self.layers]
         for key in sorted({key for span in self.wanted for key in self.around(span)}):
             self.contents[key] = [st.read(each[self.frames[key]][0]) for each in drawings]
             for name, content in zip(self.layers, self.contents[key]):
+                seen.note(name, self.frames[key], content)
                 if self.frames[key] in marks[name]:
                     for attribute, values in marks[name][self.frames[key]].values().items():
                         content.set_strokes(attribute, values)

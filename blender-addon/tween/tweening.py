@@ -15,6 +15,7 @@ from rototoon import tween
 from ..blender import camera, guard, hierarchy
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
+from ..blender.seen import Seen, changed
 from ..common.wording import are, listed
 from . import between, breakdowns, captured, layer_pegs, moved_keys, records, sheets, surroundings
 from . import keys as ks
@@ -40,6 +41,8 @@ class Call:
 class Plan:
     """Everything that will be drawn."""
 
+    seen: Seen
+    """The keys, as they were read."""
     calls: list[Call] = field(default_factory=list)
     records: dict[str, records.Layer] = field(default_factory=dict)
     frames: dict[str, ks.Frames] = field(default_factory=dict)
@@ -61,7 +64,7 @@ class Plan:
 
 def plan(ob, layers: Iterable, choose: Choose, again: bool = False) -> Plan:
     """The plan for some layers. With `again`, spans that are up to date are drawn too."""
-    result = Plan(records=records.read(ob.data), again=again)
+    result = Plan(Seen(ob), records=records.read(ob.data), again=again)
     groups: dict[tuple, list[str]] = {}
     spans: dict[str, dict[tuple[int, int], Choices]] = {}
     for layer in layers:
@@ -114,7 +117,7 @@ def _plan_group(
         sheet = sheets.Sheet(names, run, plane, mine, choices)
         surroundings.prepare(ob, sheet, next(_drawn(ob, names, run, to_sheet)))
         captured.put_on(ob, sheet, parts)
-        sheet.read(ob, result.marks)
+        sheet.read(ob, result.marks, result.seen)
         for k in [k for k in mine if not result.again and _is_current(sheet, k, result)]:
             del sheet.wanted[k]
             result.current += 1
@@ -199,9 +202,10 @@ class Done:
 
 
 def finish(ob, plan: Plan) -> Done:
-    """Writes a drawn plan. Raises a `Problem` if one of its layers is closed by now."""
+    """Writes a drawn plan. Raises a `Problem` if one of its layers is closed by now, or was changed where the plan writes."""
     guard.need(ob)
     guard.need_open(gp.find_layer(ob, name) for name in plan.frames)
+    _need_unchanged(ob, plan)
     done = Done()
     for name, found in plan.frames.items():
         done.keys += len(found.edited)
@@ -232,6 +236,21 @@ def finish(ob, plan: Plan) -> Done:
     records.write(ob.data, plan.records)
     ob.data.update_tag()
     return done
+
+
+def _need_unchanged(ob, plan: Plan) -> None:
+    kept = records.read(ob.data)
+    for name, found in plan.frames.items():
+        layer = gp.find_layer(ob, name)
+        if layer is None:
+            raise changed(name)
+        keys = set(ks.frames_of(layer, kept.get(name, records.Layer())).keys)
+        spans = [(call.sheet.frames[k], call.sheet.frames[k + 1]) for call in plan.calls if name in call.sheet.layers for k in call.spans]
+        fresh = {f for f in keys - set(found.keys) if f in plan.strays[name] or any(first < f < last for first, last in spans)}
+        for frame in sorted(fresh or set(found.keys) - keys):
+            raise changed(name, frame)
+    drawn = [call.sheet for call in plan.calls]
+    plan.seen.need((name, sheet.frames[key]) for sheet in drawn for key in sheet.contents for name in sheet.layers)
 
 
 def adopt(layer, found: ks.Frames, frames: Iterable[int]) -> None:
@@ -329,29 +348,39 @@ def clear(ob, layers: Iterable, around: int | None = None) -> Cleared:
             continue
         inside = [number for number in found.made if span[0] <= number <= span[1]]
         edited = [number for number in found.edited if span[0] <= number <= span[1]]
+        known = moved_keys.drawn_now(layer, record, found)
         adopt(layer, found, edited)
         gp.remove_frames(layer, inside)
         done.removed += len(inside)
         done.kept |= set(edited)
-        _forget(record, found.keys, span)
+        if around is None:
+            record.spans.clear()
+        _forget(record, known if record.spans else [], found.keys, span)
         moved_keys.note(layer, record)
     records.write(ob.data, kept)
     ob.data.update_tag()
     return done
 
 
-def _forget(record: records.Layer, keys: list[int], cleared: tuple[float, float]) -> None:
-    """Removes the records of in-betweens from one frame to another. What is left of a span is drawn again at the next update."""
+def _forget(record: records.Layer, spans: list[tuple[int, int, records.Span]], keys: list[int], cleared: tuple[float, float]) -> None:
+    """Removes the records of in-betweens from one frame to another. `spans` are the recorded ones as they lie now (see `moved_keys.drawn_now`). What is
+    left of a span is drawn again at the next update."""
     first, last = cleared
-    for start, known in list(record.spans.items()):
+    whole, pieces = {}, {}
+    for recorded, start, known in spans:
         left = {frame: total for frame, total in known.sums.items() if not first <= frame <= last}
-        if len(left) == len(known.sums) and left:
+        apart = not known.sums and (last <= start or known.last <= first)
+        if (len(left) == len(known.sums) and left) or apart:
+            whole[start] = known
             continue
-        del record.spans[start]
+        del record.spans[recorded]
         for a, b in zip(keys, keys[1:]):
             own = {frame: total for frame, total in left.items() if a < frame < b}
             if own:
-                record.spans[a] = records.Span(b, "", known.choices.divided(start, known.last, (a, b)), own, known.marked)
+                pieces[a] = records.Span(b, "", known.choices.divided(start, known.last, (a, b)), own, known.marked)
+    if pieces:
+        # Keys have one place, so what was moved is recorded where it lies now, too.
+        record.spans = whole | pieces
 
 
 def nothing_to_draw(result: Plan) -> Problem:

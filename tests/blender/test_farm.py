@@ -186,6 +186,19 @@ def test_what_was_changed_meanwhile_stays(addon, sent, tmp_path):
         assert np.allclose(after[2], before[frame][2] + (2.0 if 1 < frame < 9 else 0.0, 0.0), atol=0.01)
 
 
+def test_a_part_that_is_hidden_meanwhile_stays_hidden(addon, sent, tmp_path):
+    part = sent.rototoon.parts[0]
+    sent.rototoon.active_part = 0
+    for frame in (4, 5, 6):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.hide_part()
+    collect(tmp_path)
+    assert [frame for frame in range(1, 10) if part.number in places(addon, sent, frame)] == [1, 2, 3, 7, 8, 9]
+    report = last_report(addon)
+    assert f'has parts that are hidden since it was sent, and stay so: "{part.name}" on 4 to 6' in report.text, report.text
+    assert "press Track" not in report.text
+
+
 def test_corrections_and_new_keys_stay(addon, sent, tmp_path):
     shots.move(addon, sent, 4, 2, (0.0, 6.0), which=[1])  # a point of the square
     before = places(addon, sent, 4)

@@ -1,7 +1,9 @@
 """Documents in and out, and Blender files saved, opened and moved."""
 
 import json
+import os
 import shutil
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
@@ -81,6 +83,33 @@ def test_import_into_the_active_object(addon, tmp_path):
     ob = bpy.context.object
     assert len(bpy.data.objects) == count and len(ob.rototoon.parts) == 2
     assert [f.frame_number for f in shots.layer_of(ob).frames] == list(range(9))
+
+
+@pytest.mark.parametrize("lacking", ["camera", "size", "view"])
+def test_an_import_that_has_no_place_leaves_the_object(addon, tmp_path, lacking):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.match_contours()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "in.json").write_text(json.dumps(project(tmp_path / "other")))
+    if lacking == "camera":
+        bpy.data.objects.remove(ob.rototoon.camera or bpy.context.scene.camera)
+    elif lacking == "size":
+        ob.scale = 0, 0, 0
+    else:
+        ob.rototoon.camera.data.type = "PANO"
+    bpy.context.view_layer.update()
+
+    gp = addon("blender.grease_pencil")
+
+    def state():
+        settings = ob.rototoon
+        frames = {frame: len(gp.offsets(handle)) - 1 for frame, (handle, _) in gp.drawings(shots.layer_of(ob)).items()}
+        return frames, [part.name for part in settings.parts], settings.pattern, settings.frame_offset, settings.fps
+
+    before = state()
+    with pytest.raises(RuntimeError, match={"camera": "no camera", "size": "a scale of 0", "view": "is of type PANO"}[lacking]):
+        bpy.ops.rototoon.import_document(filepath=str(tmp_path / "other" / "in.json"), into="ACTIVE", keep_numbers=True)
+    assert state() == before and before[0]
 
 
 @pytest.mark.parametrize(
@@ -172,6 +201,28 @@ def changed(path):
 
 def names(path):
     return [part["name"] for part in json.loads(path.read_text())["parts"]]
+
+
+def test_export_without_the_ending_leaves_another_file(addon, library, tmp_path):
+    """Blender asks about the name that was typed, and not about the one with the ending."""
+    ob = shots.two_keys(addon, tmp_path)
+    other = tmp_path / "shot.json"
+    other.write_text("somebody else's document")
+    with pytest.raises(RuntimeError, match=r"a file shot\.json already, which is not this object's"):
+        bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot"))
+    assert other.read_text() == "somebody else's document"
+    bpy.ops.rototoon.export_document(filepath=str(other))
+    # The object knows the file now.
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot"))
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "fresh"))
+    assert (tmp_path / "fresh.json").exists() and ob.rototoon.known_files.count("json") == 2
+
+
+@pytest.mark.parametrize(("typed", "becomes"), [("shot", "shot.json"), ("shot.json", "shot.json"), ("shot.JSON", "shot.JSON"), ("", "")])
+def test_the_file_browser_gets_the_ending(addon, tmp_path, typed, becomes):
+    operator = SimpleNamespace(filepath=os.path.join(tmp_path, typed))
+    changed = addon("exchange.operators.export_document").ROTOTOON_OT_export_document.check(operator, None)
+    assert operator.filepath == os.path.join(tmp_path, becomes) and changed == (typed != becomes)
 
 
 def test_export_onto_a_document_that_another_program_changed(addon, library, tmp_path):

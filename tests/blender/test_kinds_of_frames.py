@@ -1,5 +1,7 @@
 """Frames that are more than a drawing on a number: those on which a drawing ends by itself, those that share a drawing, and curves on keys."""
 
+import json
+
 import bpy
 import numpy as np
 import pytest
@@ -80,6 +82,20 @@ def test_after_the_advice_work_goes_on(addon, ended):
     bpy.context.scene.frame_set(9)
     assert bpy.ops.rototoon.new_key() == {"FINISHED"}
     assert frames(shots.layer_of(ended)) == dict.fromkeys((1, 5, 7, 9), True)
+
+
+def test_an_ended_drawing_is_not_exported_on_later_frames(addon, fake, tmp_path):
+    ob = shots.set_up(tmp_path)
+    ob.data.layers.new("Lines")
+    blank(ob, 5, 2)
+    add(addon, ob, "Lines", 5, [[(0, 1), (1, 1.5)]])
+    ob.data.layers.new("Other")
+    for frame in (1, 6, 8):
+        add(addon, ob, "Other", frame, [[(0, 0), (1, 0.5)]])
+    assert frames(ob.data.layers["Lines"]) == {5: True, 7: False}
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json"), layers="ALL")
+    document = json.loads((tmp_path / "out.json").read_text())
+    assert {each["frame"]: len(each["strokes"]) for each in document["drawings"]} == {1: 1, 5: 2, 6: 2, 8: 1}
 
 
 def test_frames_that_share_a_drawing_are_written_apart(addon):

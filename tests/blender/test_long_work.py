@@ -92,3 +92,13 @@ def test_undo_in_another_window_ends_the_writing(work, window):
     assert work.log[-1] == "no more of written" and "written 3" not in work.log
     assert tick(work, window) == {"CANCELLED"}
     assert work.reported[0][0] == "WARNING" and window.timers == []
+
+
+def test_an_error_that_nobody_foresaw_ends_the_work(work, window, monkeypatch):
+    before = hooks()
+    monkeypatch.setattr(work, "finish", lambda *_: {}["nothing"], raising=False)
+    assert work._follow(window) == {"RUNNING_MODAL"}
+    with pytest.raises(KeyError):
+        for _ in range(12):
+            tick(work, window)
+    assert hooks() == before and window.timers == [] and window.said[-1] is None

@@ -95,6 +95,26 @@ def test_snapped_lines_open_parts_and_lifetimes(addon, fake, tmp_path):
     assert len(bpy.data.masks["roto"].layers["bow"].splines[0].points) == 3
 
 
+def test_a_part_that_is_hidden_is_not_in_the_mask(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    ob.rototoon.active_part = 0
+    bpy.ops.rototoon.match_contours()
+    ob.rototoon.frame_offset += 20
+    gp = addon("blender.grease_pencil")
+    gp.put_frames(shots.layer_of(ob), {frame: [frame + 20] for frame in gp.frame_numbers(shots.layer_of(ob))})
+    bpy.ops.rototoon.track()
+    for frame in (24, 25, 28):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.hide_part()
+    bpy.ops.rototoon.contours_to_mask(name="roto")
+    hidden, other = (bpy.data.masks["roto"].layers[part.name] for part in ob.rototoon.parts)
+    shown = []
+    for frame in range(21, 30):
+        bpy.context.scene.frame_set(frame)
+        shown.append([hidden.alpha, other.alpha])
+    assert np.allclose(shown, [[frame not in (24, 25, 28), 1] for frame in range(21, 30)])
+
+
 def composite(node, output, path):
     """What the compositor makes of a node's output, (H, W, 4) from the top."""
     scene, tree = bpy.context.scene, node.id_data

@@ -102,3 +102,30 @@ def test_a_part_that_is_hidden_has_no_hidden_lines(addon, cut):
     bpy.context.scene.frame_set(5)
     bpy.ops.rototoon.hide_part()
     assert strokes(addon, cut, 5) == 0 and strokes(addon, cut, 4) == before[4]
+
+
+@pytest.mark.usefixtures("library")
+def test_a_layer_of_the_artist_that_is_called_hidden_covers_and_is_cut(addon):
+    from test_strokes import add, circle, content, drawing_object
+
+    ob = drawing_object(addon, ("Lines", "Arm Hidden", "Top"))
+    add(addon, ob, "Lines", 1, [[(-2, 0), (2, 0)]])
+    add(addon, ob, "Arm Hidden", 1, [circle((0, 0), 0.5)], cyclic=True)
+    add(addon, ob, "Top", 1, [circle((0.5, 0), 0.2)], cyclic=True)
+    bpy.context.scene.frame_set(1)
+    bpy.ops.rototoon.hidden_lines(covers="CLOSED", action="MOVE")
+    assert len(content(addon, ob, "Lines", 1).sizes) == 2 and "Lines Hidden" in ob.data.layers
+    assert not content(addon, ob, "Arm Hidden", 1).strokes("cyclic").any()
+    # What was moved aside neither covers nor is cut again.
+    bpy.ops.rototoon.hidden_lines(covers="CLOSED", action="MOVE")
+    assert addon("scripting").take_reports()[-1].text == "Nothing is hidden"
+
+
+@pytest.mark.usefixtures("library")
+def test_locked_layers_ask_nothing(addon):
+    from test_strokes import add, drawing_object
+
+    ob = drawing_object(addon)
+    add(addon, ob, "Lines", 1, [[(-2, 0), (2, 0)]])
+    ob.data.layers["Lines"].lock = True
+    assert not addon("strokes.operators.hidden_lines").ROTOTOON_OT_hidden_lines._cuts_own_keys(ob)

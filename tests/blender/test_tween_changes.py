@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from test_strokes import add, content
+from test_strokes import add, circle, content
 from test_tween import figure, frames, keyed, move
 
 pytestmark = pytest.mark.usefixtures("library")
@@ -97,6 +97,40 @@ def test_what_rototoon_itself_changes_stays_an_in_between(addon, change):
     assert said(addon).text == "7 in-betweens in 1 span"
     assert bpy.ops.rototoon.clear_in_betweens() == {"FINISHED"}
     assert said(addon).text == "7 in-betweens removed" and list(frames(addon, ob)) == [1, 9]
+
+
+@pytest.fixture
+def on_twos(addon):
+    """In-betweens on twos under something that moves on ones, with their hidden lines cut: frames that were held have drawings of their own."""
+    ob = keyed(addon)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", step=2)
+    ob.data.layers.new("Cover")
+    for frame in range(1, 10):
+        add(addon, ob, "Cover", frame, [circle((0.5 + 0.15 * frame, 0.5), 0.5)], cyclic=True)
+    assert list(frames(addon, ob)) == [1, 3, 5, 7, 9]
+    without_hidden(addon, ob)
+    assert {2, 4, 6, 8} <= frames(addon, ob).keys()
+    return ob
+
+
+def test_cut_copies_of_held_drawings_are_in_betweens(addon, on_twos):
+    found = addon("tween.keys").frames_of(on_twos.data.layers["Lines"], addon("tween.records").read(on_twos.data)["Lines"])
+    assert (found.keys, found.made, found.edited) == ([1, 9], list(range(2, 9)), [])
+    bpy.ops.rototoon.update_in_betweens()
+    assert said(addon).text.startswith("3 in-betweens in 1 span") and list(frames(addon, on_twos)) == [1, 3, 5, 7, 9]
+    assert "BREAKDOWN" not in frames(addon, on_twos).values()
+
+
+def test_cut_copies_of_held_drawings_are_cleared(addon, on_twos):
+    bpy.ops.rototoon.clear_in_betweens()
+    assert said(addon).text == "7 in-betweens removed" and list(frames(addon, on_twos)) == [1, 9]
+
+
+def test_a_cut_copy_that_the_artist_changes_is_a_key(addon, on_twos):
+    move(addon, on_twos, 2, by=0.4)
+    bpy.ops.rototoon.update_in_betweens()
+    assert "1 drawing that you had changed is a key now: frame 2" in said(addon).text
+    assert frames(addon, on_twos)[2] == "BREAKDOWN"
 
 
 def test_own_keys_that_are_cut_are_a_warning_with_their_frames(addon):

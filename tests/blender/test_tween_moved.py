@@ -158,6 +158,32 @@ def test_a_changed_in_between_on_another_frame_is_the_artists(addon):
     assert frames(addon, ob)[23] == "BREAKDOWN"
 
 
+@pytest.mark.parametrize("by", (0, 8, 3))
+def test_clearing_around_the_playhead_forgets_the_span_that_lies_there(addon, by):
+    ob = drawn(addon, dict(zip(KEYS, PLACES)), "LINEAR")
+    put_on(ob, {frame: frame + by for frame in range(1, 26)})
+    bpy.context.scene.frame_set(4 + by)
+    bpy.ops.rototoon.clear_in_betweens(frames="CURRENT")
+    assert said(addon).text == "7 in-betweens removed"
+    move(addon, ob, 25 + by, by=0.4)
+    bpy.ops.rototoon.update_in_betweens()
+    there = [frame - by for frame in frames(addon, ob)]
+    assert there == [1, *range(9, 26)], "what was cleared does not come back"
+    # Spans of moved keys are drawn again in any case.
+    assert said(addon).text.startswith("14 in-betweens in 2 spans" if by else "7 in-betweens in 1 span")
+
+
+def test_a_new_key_in_a_span_that_was_moved_divides_what_is_cleared(addon):
+    ob = drawn(addon, dict(zip(KEYS, PLACES)), "LINEAR")
+    put_on(ob, {frame: frame + 8 for frame in range(1, 26)})
+    move(addon, ob, 13, by=0.4)
+    bpy.context.scene.frame_set(10)
+    bpy.ops.rototoon.clear_in_betweens(frames="CURRENT")
+    assert list(frames(addon, ob)) == [9, *range(13, 34)]
+    bpy.ops.rototoon.update_in_betweens()
+    assert list(frames(addon, ob)) == [9, *range(13, 34)]
+
+
 def test_records_of_earlier_versions_follow_by_what_lies_there(addon):
     ob = drawn(addon, dict(zip(KEYS, PLACES)), "LINEAR")
     kept = json.loads(ob.data["rototoon_tween"])

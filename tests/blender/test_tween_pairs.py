@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 import pytest
-from test_strokes import content, drawing
+from test_strokes import add, content, drawing
 from test_tween import KEYS, drawn_again, figure, keyed, mark, tracks
 
 pytestmark = pytest.mark.usefixtures("library")
@@ -124,7 +124,7 @@ def test_match_strokes_names_what_in_between_does_not_carry_out(addon, monkeypat
 
 
 def test_doubts_are_those_of_in_between(addon):
-    from test_strokes import add, drawing_object
+    from test_strokes import drawing_object
     from test_tween import scribble
 
     ob = drawing_object(addon)
@@ -152,6 +152,19 @@ def test_scripts_pair_strokes_by_their_numbers(addon):
     assert tracks(addon, ob, 9)[1] == 1
 
 
+def test_pairs_of_other_keys_do_not_meet_when_a_key_between_is_deleted(addon):
+    ob = keyed(addon, (1, 9, 17))
+    for frame in (1, 9):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.match_strokes()
+    for frame, number in ((1, 1), (9, 2)):
+        bpy.context.scene.frame_set(frame)
+        bpy.ops.rototoon.match_strokes(earlier=number, later=number)
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], [9])
+    _, found = pairing_of(addon, ob)
+    assert [(row.earlier, row.later, row.by_hand) for row in found.pairs] == [(k, k, False) for k in range(3)]
+
+
 @pytest.mark.parametrize("side", (0, 1))
 def test_scripts_say_that_a_stroke_has_no_counterpart(addon, side):
     ob = keyed(addon)
@@ -161,7 +174,29 @@ def test_scripts_say_that_a_stroke_has_no_counterpart(addon, side):
     numbers = tracks(addon, ob, 1), tracks(addon, ob, 9)
     assert 2 not in numbers[1] and numbers[0] == [1, 2, 3]
     marks = content(addon, ob, "Lines", (1, 9)[side]).curve[("rototoon_next", "rototoon_before")[side]].tolist()
-    assert marks == [0, -1, 0]
+    (key,) = set(content(addon, ob, "Lines", (9, 1)[side]).curve["rototoon_key"].tolist())
+    assert marks == [0, -1 - key, 0] and key > 0
+
+
+@pytest.mark.parametrize("side", (0, 1))
+def test_no_counterpart_is_said_of_one_key(addon, side):
+    """A key that is drawn between the two later has the stroke."""
+    ob = keyed(addon, (1, 9, 17))
+    bpy.ops.rototoon.match_strokes()
+    bpy.ops.rototoon.match_strokes(**dict(zip(("earlier", "later"), (1, -1) if side == 0 else (-1, 1))))
+    add(addon, ob, "Lines", 5, figure(0.7, 0.1))
+
+    def decided(frame):
+        return [(row.earlier, row.later) for row in pairing_of(addon, ob, frame)[1].pairs if row.by_hand]
+
+    assert decided(1) == decided(5) == decided(9) == []
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], [5])
+    assert decided(1) == [(0, -1) if side == 0 else (-1, 0)] and decided(9) == []
+    # A decision of an earlier version counts for every neighbour.
+    handle, name = drawing(addon, ob, "Lines", (1, 9)[side]), ("rototoon_next", "rototoon_before")[side]
+    addon("blender.grease_pencil").put(handle, name, np.array([-1, 0, 0], np.int32))
+    add(addon, ob, "Lines", 5, figure(0.7, 0.1))
+    assert decided((1, 5)[side]) == [(0, -1) if side == 0 else (-1, 0)]
 
 
 @pytest.mark.parametrize(

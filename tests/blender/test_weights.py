@@ -71,3 +71,21 @@ def test_in_betweens_have_the_weights_of_the_earlier_key(addon, library, tmp_pat
     modifier.location, modifier.vertex_group_name = (0, 5, 0), "arm"
     bpy.ops.rototoon.in_between(frames="ALL")
     assert [lifted(ob, frame) for frame in range(1, 10)] == [[0, 0, 5, 5]] * 9
+
+
+@pytest.mark.parametrize("group", [True, False])
+def test_strokes_that_get_other_points_are_said_to_lose_weights(addon, library, group):
+    from test_strokes import add, circle, drawing_object, wave
+
+    ob = drawing_object(addon, ("Lines", "Cover"))
+    add(addon, ob, "Lines", 1, [wave(200)])
+    add(addon, ob, "Cover", 1, [circle((1.0, 0), 0.5)], cyclic=True)
+    if group:
+        ob.vertex_groups.new(name="arm")
+    reports = addon("scripting").take_reports
+    reports()
+    bpy.ops.rototoon.fit_strokes(unit="WORLD", tolerance=0.01)
+    bpy.ops.rototoon.hidden_lines(covers="CLOSED")
+    said = [report.text for report in reports()]
+    assert len(said) == 2 and "fitted" in said[0] and "hidden line" in said[1]
+    assert all(("has 1 vertex group, and weights do not follow" in text) == group for text in said)

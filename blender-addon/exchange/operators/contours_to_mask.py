@@ -20,6 +20,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
     name: bpy.props.StringProperty(
         name="Mask",
         description="Name of the mask. If empty, the object's name. A mask of this name is replaced if it was made here",
+        options={"SKIP_SAVE"},
     )
     use_snapped: bpy.props.BoolProperty(
         name="Snapped Lines",

@@ -43,6 +43,14 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
+    def check(self, _context) -> bool:
+        """Called by Blender when a name was typed. With the ending in the name, the file browser asks before a file is replaced."""
+        path = bpy.path.ensure_ext(self.filepath, ".json") if os.path.basename(self.filepath) else self.filepath
+        changed = path != self.filepath
+        if changed:
+            self.filepath = path
+        return changed
+
     @classmethod
     def lacking(cls, ob, changes: str) -> str:
         """As `OnShapes.lacking`. Drawings need no footage."""
@@ -55,7 +63,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     def run(self, context) -> str:
         if not self.filepath:
             raise Problem("No file chosen")
-        path = bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json")
+        path = self._path(context.object)
         if not context.object.rototoon.pattern:
             return self._run_without_footage(context.object, path)
         why = OnShapes.lacking(context.object, self.changes) if self.layers == "ONE" else ""
@@ -80,6 +88,14 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         found += lines
         found += [f"paint of {counted(paint, 'frame')}"] if paint else []
         return f"{' and '.join(found)} in {os.path.basename(path)}"
+
+    def _path(self, ob) -> str:
+        """The file to write. Raises a `Problem` where the ending makes it another file than the one that was named, which the object does not know."""
+        given = bpy.path.abspath(self.filepath)
+        path = bpy.path.ensure_ext(given, ".json")
+        if path != given and os.path.exists(path) and not known_files.is_known(ob, path):
+            raise Problem(f"There is a file {os.path.basename(path)} already, which is not this object's: to replace it, choose it with its ending")
+        return path
 
     def _run_without_footage(self, ob, path: str) -> str:
         """Writes drawings as the camera sees them."""

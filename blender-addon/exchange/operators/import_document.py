@@ -9,7 +9,7 @@ from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
 from ...common.wording import counted, listed
-from .. import drawn, files, filled, importing, known_files
+from .. import drawn, files, filled, importing, known_files, places
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
@@ -61,7 +61,9 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             importing.need_open(ob)
             drawn.need_open(ob, project)
             filled.need_open(ob, project)
-            stage.assign(ob, shot)
+            with stage.tried(ob, shot):
+                context.view_layer.update()
+                places.need(ob, project)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
             view.leave_mode(context)

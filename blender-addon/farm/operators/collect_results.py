@@ -114,13 +114,20 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         found.regions += done.regions
 
     def _say_kept(self, name: str, taken: collecting.Taken) -> None:
-        said = [f'"{part}" on {listed(frames)}' for part, frames in taken.kept.items()]
-        if len(said) > NAMED:
-            said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')}"]
-        if said:
-            self.warn(f'"{name}" was changed since it was sent, and stays as it is: {", ".join(said)}; press Track')
+        if taken.kept:
+            self.warn(f'"{name}" was changed since it was sent, and stays as it is: {_parts(taken.kept)}; press Track')
+        if taken.hidden:
+            self.warn(f'"{name}" has parts that are hidden since it was sent, and stay so: {_parts(taken.hidden)}')
         self.warn(f'"{name}": {stayed("snapped drawing", taken.edited)}' if taken.edited else "")
         self.warn(taken.left)
+
+
+def _parts(frames: dict[str, list[int]]) -> str:
+    """Parts with their frames, in words."""
+    said = [f'"{part}" on {listed(own)}' for part, own in frames.items()]
+    if len(said) > NAMED:
+        said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')}"]
+    return ", ".join(said)
 
 
 @dataclass

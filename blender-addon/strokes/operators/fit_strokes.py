@@ -4,14 +4,14 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, projection, selection
+from ...blender import guard, projection, seen, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined
 from ...tween import rototoon_changes
-from .. import fitting
+from .. import fitting, weights
 
 
 class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
@@ -58,6 +58,15 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         name="Selected Strokes Only", description="In edit mode, only strokes with a selected point", default=False
     )
 
+    def invoke(self, context, event):
+        """Called by Blender. It asks first where weights of vertex groups may be lost."""
+        if bpy.app.background or context.window is None or not weights.groups(context.object):
+            return super().invoke(context, event)
+        # The answer calls `execute`.
+        self._picked = True
+        title = "Fit strokes with weights of vertex groups?"
+        return context.window_manager.invoke_confirm(self, event, title=title, message=weights.LOST, confirm_text="Fit")
+
     def begin(self, context):
         self._ob = context.object
         self.warn(guard.left_out(st.drawn_layers(self._ob, self.layers == "ACTIVE")))
@@ -71,7 +80,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
                 "No drawings to fit on these frames: choose other frames or layers, or unlock the layers. "
                 "Contours are not changed"
             )
-        self._done = []
+        self._done, self._seen = [], seen.Seen(self._ob)
         return jobs.Stepper(self._steps(), "Fitting")
 
     def _numbers(self, layer, current: int) -> list[int]:
@@ -88,6 +97,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             fitted = fitting.fit(content, self._wanted(handle, content), *self._scale(layer, content))
             if fitted is not None:
                 self._done.append((name, number, fitted))
+                self._seen.note(name, number, content)
             yield (index + 1) / len(self._drawings)
 
     def _wanted(self, handle, content: st.Content) -> np.ndarray:
@@ -113,6 +123,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
+        self._seen.need((name, number) for name, number, _ in self._done)
         with rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
@@ -120,6 +131,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         strokes = sum(fitted.fitted for *_, fitted in self._done)
         if not strokes:
             return "No stroke became lighter"
+        self.warn(weights.warning(self._ob))
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
         lighter = {layer: {number for name, number, fitted in self._done if name == layer and fitted.fitted} for layer in made.frames}

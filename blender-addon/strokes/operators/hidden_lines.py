@@ -3,7 +3,7 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, seen
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
@@ -11,7 +11,7 @@ from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined, listed
 from ...tween import rototoon_changes
-from .. import hidden
+from .. import hidden, weights
 
 
 BEFORE = "In-betweens that are drawn later come from the cut keys. Finish them first, or work on a copy of the object"
@@ -62,12 +62,16 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def invoke(self, context, event):
         """Called by Blender. It asks first where in-betweens depend on drawings that it would cut."""
-        ob = context.object
-        if bpy.app.background or context.window is None or not rototoon_changes.has_own_keys(ob, st.editable_layers(ob, active=False)):
+        if bpy.app.background or context.window is None or not self._cuts_own_keys(context.object):
             return super().invoke(context, event)
         # The answer calls `execute`.
         self._picked = True
         return context.window_manager.invoke_confirm(self, event, title="Cut the keys of in-betweens?", message=BEFORE, confirm_text="Cut")
+
+    @staticmethod
+    def _cuts_own_keys(ob) -> bool:
+        """Whether a layer that would be cut has in-betweens. Closed layers are no error here: the work names them."""
+        return rototoon_changes.has_own_keys(ob, guard.open_layers(st.drawn_layers(ob, active=False)))
 
     def begin(self, context):
         self._ob, scene = context.object, context.scene
@@ -80,7 +84,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._need_open()
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
-        self._cuts = []
+        self._cuts, self._seen = [], seen.Seen(self._ob)
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 
     def _need_open(self) -> None:
@@ -95,18 +99,20 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
-                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices))
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen))
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({cut.layer for cut in self._cuts if cut.changed}))
         self._need_open()
+        hidden.need_unchanged(self._ob, self._cuts, self._seen)
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
         with rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
         self._ob.data.update_tag()
         if not drawings:
             return "Nothing is hidden"
+        self.warn(weights.warning(self._ob))
         return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
 
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:

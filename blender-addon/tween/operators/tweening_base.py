@@ -92,8 +92,7 @@ class Tweening(OnKeys, Long):
         stale = _without_keys(self._plan)
         kept = any(found.edited for found in self._plan.frames.values())
         if not self._plan.calls and not self._plan.current and not kept:
-            problem = tweening.nothing_to_draw(self._plan)
-            raise Problem(f"{problem}; {stale}") if stale else problem
+            raise Problem("; ".join(filter(None, (str(tweening.nothing_to_draw(self._plan)), stale, *self._warnings))))
         self.warn(stale)
         plan, threads = self._plan, preferences.threads()
         return jobs.Worker(lambda progress: tweening.draw(plan, progress, threads))

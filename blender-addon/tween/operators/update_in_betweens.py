@@ -16,7 +16,9 @@ class ROTOTOON_OT_update_in_betweens(Tweening, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    def choose(self, _name, found, record):
+    def choose(self, name, found, record):
+        if found.made and not record.spans:
+            self.warn(f'the in-betweens of "{name}" stay as they were, since it is not known from what they were drawn: press In-between there')
         spans = zip(found.keys, found.keys[1:])
         held = {span: record.choices(*span) or _swallowed(record, span) or _left_in(record, span, found) for span in spans}
         return {span: choices for span, choices in held.items() if choices is not None}

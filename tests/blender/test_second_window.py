@@ -1,0 +1,89 @@
+"""What the artist draws in a second window while long work runs in the first one. With the real library."""
+
+import bpy
+import pytest
+from test_strokes import add, circle, content, drawing_object, wave
+from test_tween import figure, frames, keyed, move
+
+pytestmark = pytest.mark.usefixtures("library")
+
+
+@pytest.fixture
+def meanwhile(addon, monkeypatch):
+    """Does something between the work of an operator and its writing."""
+
+    def do(module, operator, what):
+        cls = getattr(addon(module), operator)
+        finish = cls.finish
+        monkeypatch.setattr(cls, "finish", lambda self, context, work: (what(), finish(self, context, work))[1])
+
+    return do
+
+
+def sizes(addon, ob, frame, layer="Lines"):
+    return content(addon, ob, layer, frame).sizes.tolist()
+
+
+def test_fit_strokes_leaves_what_was_drawn_meanwhile(addon, meanwhile):
+    ob = drawing_object(addon)
+    add(addon, ob, "Lines", 1, [wave(200)])
+    meanwhile("strokes.operators.fit_strokes", "ROTOTOON_OT_fit_strokes", lambda: add(addon, ob, "Lines", 1, [circle((3, 3), 1.0)]))
+    with pytest.raises(RuntimeError, match='frame 1 of the layer "Lines" was changed during the work'):
+        bpy.ops.rototoon.fit_strokes(unit="WORLD", tolerance=0.01, frames="ALL")
+    assert sizes(addon, ob, 1) == [200, 64]
+
+
+@pytest.mark.parametrize("drawn", ["on it", "on a new frame"])
+def test_hidden_lines_leave_what_was_drawn_meanwhile(addon, meanwhile, drawn):
+    ob = drawing_object(addon, ("Lines", "Cover"))
+    add(addon, ob, "Lines", 1, [[(-2, 0), (2, 0)]])
+    add(addon, ob, "Cover", 1, [circle((9, 9), 0.5)], cyclic=True)
+    add(addon, ob, "Cover", 3, [circle((0, 0), 0.5)], cyclic=True)
+    bpy.context.scene.frame_end = 4
+    frame = 1 if drawn == "on it" else 3
+    meanwhile("strokes.operators.hidden_lines", "ROTOTOON_OT_hidden_lines", lambda: add(addon, ob, "Lines", frame, [circle((3, 3), 1.0)]))
+    with pytest.raises(RuntimeError, match=f'frame {frame} of the layer "Lines" was changed during the work'):
+        bpy.ops.rototoon.hidden_lines(covers="CLOSED", frames="RANGE")
+    assert sizes(addon, ob, 1) == ([2, 64] if frame == 1 else [2]) and 64 in sizes(addon, ob, frame)
+
+
+def new_key(addon, ob):
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], [5])
+    add(addon, ob, "Lines", 5, figure(0.1, 0.1))
+
+
+def key_gone(addon, ob):
+    addon("blender.grease_pencil").remove_frames(ob.data.layers["Lines"], [9])
+
+
+def redrawn(addon, ob):
+    add(addon, ob, "Lines", 9, [circle((3, 3), 1.0)])
+
+
+def layer_gone(_addon, ob):
+    ob.data.layers["Lines"].name = "Other"
+
+
+@pytest.mark.parametrize(("change", "named"), [(new_key, "frame 5"), (key_gone, "frame 9"), (redrawn, "frame 9"), (layer_gone, 'The layer "Lines"')])
+def test_in_between_leaves_what_was_drawn_meanwhile(addon, meanwhile, change, named):
+    ob = keyed(addon, (1, 9))
+    bpy.ops.rototoon.in_between(spacing="LINEAR")
+    move(addon, ob, 9, by=0.3)
+    seen = {}
+
+    def what():
+        change(addon, ob)
+        seen.update(frames(addon, ob, ob.data.layers[0].name))
+
+    meanwhile("tween.operators.in_between", "ROTOTOON_OT_in_between", what)
+    with pytest.raises(RuntimeError, match=f"{named}.* was changed during the work"):
+        bpy.ops.rototoon.in_between(spacing="LINEAR", frames="ALL")
+    assert frames(addon, ob, ob.data.layers[0].name) == seen and len(seen) >= 8
+
+
+def test_a_key_far_from_the_work_is_no_matter(addon, meanwhile):
+    ob = keyed(addon, (1, 9, 17))
+    meanwhile("tween.operators.in_between", "ROTOTOON_OT_in_between", lambda: add(addon, ob, "Lines", 13, figure(0.1, 0.1)))
+    bpy.context.scene.frame_set(3)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", frames="CURRENT")
+    assert list(frames(addon, ob)) == [*range(1, 10), 13, 17]
