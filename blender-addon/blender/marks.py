@@ -152,7 +152,10 @@ def untouched_frames(data, layer: str) -> set[int]:
 
 
 def changed_frames(data, layer: str) -> list[int]:
-    """The frames of a layer whose drawings have the keyframe type "Generated", and that the artist has changed since."""
+    """The frames of a layer whose drawings have the keyframe type "Generated", and that the artist has changed since.
+
+    An empty drawing has no stroke to mark. Whoever draws there changes it: its strokes are not generated.
+    """
     return sorted(frame for frame, same in _told(data, layer).items() if same is False)
 
 
@@ -174,11 +177,18 @@ def _told(data, layer: str) -> dict[int, bool | None]:
     slots = Slots(data)
     with gp.copied(data) as copy:
         drawings = gp.drawings(gp.find_layer_of(copy, layer))
-        return {
-            frame: untouched(st.read(handle), slots)
-            for frame, (handle, kind) in drawings.items()
-            if kind == gp.GENERATED and gp.has(handle, gp.MARK)
-        }
+        return {frame: _as_generated(handle, slots) for frame, (handle, kind) in drawings.items() if kind == gp.GENERATED}
+
+
+def _as_generated(handle, slots: Slots) -> bool | None:
+    """As `untouched`, but a drawing without a mark is changed if the artist has drawn there."""
+    same = untouched(st.read(handle), slots) if gp.has(handle, gp.MARK) else None
+    return same if same is not None or all_made(handle) else False
+
+
+def all_made(handle) -> bool:
+    """Whether a drawing has no stroke of the artist."""
+    return bool(gp.value(handle, gp.MADE, len(gp.offsets(handle)) - 1).all())
 
 
 def _rest(content: st.Content, by_id: bool) -> int:
