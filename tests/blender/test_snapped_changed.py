@@ -1,6 +1,7 @@
 """Snapped drawings that the artist has changed, or drawn on, stay whole."""
 
 import bpy
+import numpy as np
 import pytest
 import shots
 from line_stage import said
@@ -43,6 +44,15 @@ def draw(addon, ob, frame):
     gp.put(handle, "position", points)
 
 
+def bend(addon, ob, frame):
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(ob.data.layers["Snapped"])[frame][0]
+    points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    points[:3, 2] += 0.3
+    gp.put(handle, "position", points)
+    return points
+
+
 def reopened(tmp_path):
     path = str(tmp_path / "older.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -60,3 +70,31 @@ def test_lines_drawn_after_the_end_stay(addon, snapped, tmp_path, reopen):
     assert said(addon).text.endswith(f"the drawing that you had changed on frame {LAST + 1} stays, as a key")
     bpy.ops.rototoon.clear_generated()
     assert kinds(ob) == {LAST + 1: "KEYFRAME"} and strokes(addon, ob, LAST + 1) == 1
+
+
+@pytest.mark.parametrize("between", ["nothing", "snap"])
+def test_clear_generated_leaves_a_changed_drawing_whole(addon, snapped, between):
+    draw(addon, snapped, 3)
+    points = bend(addon, snapped, 3)
+    if between == "snap":
+        bpy.ops.rototoon.snap()
+        assert said(addon).text.endswith("the drawing that you had changed on frame 3 stays, as a key")
+    bpy.ops.rototoon.clear_generated()
+    assert kinds(snapped) == {3: "KEYFRAME"} and strokes(addon, snapped, 3) == 3
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(snapped.data.layers["Snapped"])[3][0]
+    assert np.array_equal(gp.positions(handle, len(points)), points)
+
+
+@pytest.mark.parametrize("between", ["nothing", "snap"])
+def test_hiding_a_part_leaves_a_changed_drawing_and_says_so(addon, snapped, between):
+    bend(addon, snapped, 3)
+    if between == "snap":
+        bpy.ops.rototoon.snap()
+    bpy.context.scene.frame_set(3)
+    bpy.ops.rototoon.hide_part()
+    assert strokes(addon, snapped, 3) == 2 and kinds(snapped)[3] == "KEYFRAME"
+    assert said(addon).warnings == ("your snapped lines of it on 3 stay",)
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.hide_part()
+    assert strokes(addon, snapped, 4) == 1 and kinds(snapped)[4] == "GENERATED" and said(addon).warnings == ()
