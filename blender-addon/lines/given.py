@@ -211,6 +211,7 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     _tint(rows, strokes, shown)
     rows.values[gp.TRACK] = numbers
     rows.values[gp.LINE] = np.repeat(numbers, rows.sizes)
+    tracing.note_looks(rows, ob.data)
     if any(stroke.fields for stroke in strokes):
         rows.values[gp.FIELDS] = np.array([stroke.fields for stroke in strokes], np.int32)
     return rows
