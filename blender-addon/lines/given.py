@@ -71,7 +71,7 @@ class Done:
 
 def draw(ob, name: str, film: Film) -> Done:
     """Draws a film on the layer `name`, in the place of generated drawings there."""
-    guard.need_named(ob, [name])
+    guard.need_apart(ob, [name])
     target = gp.layer(ob, name)
     own = _cleared(ob, name, target, film)
     keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}

@@ -163,7 +163,7 @@ def _need_unchanged(ob, names: list[str], plan: pl.Plan) -> None:
     missing = [name for name in names if plan.sums[name] and gp.find_layer(ob, name) is None]
     if missing:
         raise Problem(f'The layer "{missing[0]}" was removed during the work, so the result was dropped')
-    guard.need_named(ob, names)
+    guard.need_apart(ob, names)
     if {layer.name: layer.sums() for layer in dr.read(ob, names)} != {name: plan.sums[name] for name in names}:
         raise Problem("The drawings changed while they were traced, so the result was dropped: try again")
 

@@ -22,7 +22,7 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
 
     def begin(self, context):
         self._ob = context.object
-        guard.need_named(self._ob, [self._ob.rototoon.snapped_layer])
+        guard.need_apart(self._ob, [self._ob.rototoon.snapped_layer])
         self._reading = document.read(self._ob, results=True, gaps=True)
         if not any("tracks" in part for part in self._reading.document["parts"]):
             raise Problem("Nothing to snap: press Track first")
@@ -32,7 +32,7 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
         return jobs.Worker(lambda progress: self._session.snap(progress, threads=threads))
 
     def finish(self, context, work) -> str:
-        guard.need_named(self._ob, [self._ob.rototoon.snapped_layer])
+        guard.need_apart(self._ob, [self._ob.rototoon.snapped_layer])
         reading = document.read(self._ob, results=True, gaps=True)
         if reading.document != self._reading.document:
             raise Problem("The contours changed while they were snapped, so the result was dropped: press Snap again")
