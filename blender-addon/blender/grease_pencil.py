@@ -167,7 +167,12 @@ def is_drawing(ob: bpy.types.Object | None) -> bool:
 
 def layers(ob: bpy.types.Object, name: str) -> list[bpy.types.bpy_struct]:
     """The layers called `name`, or whose name begins with `name` and a dot or space; the lowest first."""
-    return [layer for layer in ob.data.layers if layer.name == name or layer.name.startswith((name + ".", name + " "))]
+    return [layer for layer in ob.data.layers if is_named(layer.name, name)]
+
+
+def is_named(layer: str, name: str) -> bool:
+    """Whether a layer of this name is one of the layers called `name`."""
+    return layer == name or layer.startswith((name + ".", name + " "))
 
 
 def layer(ob: bpy.types.Object, name: str) -> bpy.types.bpy_struct:

@@ -137,6 +137,23 @@ def need_named(ob: bpy.types.Object, names: Iterable[str], hidden: bool = False)
             raise Problem(f'A layer group of "{ob.name}" is called "{name}", so no layer can be: give the group another name')
 
 
+def need_apart(ob: bpy.types.Object, names: Iterable[str], hidden: bool = False) -> None:
+    """As `need_named`, for layers with results. One that counts as contours cannot be such a layer: what is drawn there would be parts."""
+    names = list(names)
+    need_named(ob, names, hidden)
+    for why in filter(None, (as_contours(ob, name) for name in names)):
+        raise Problem(why)
+
+
+def as_contours(ob: bpy.types.Object, name: str) -> str:
+    """Why a layer of this name cannot have results; empty if it can."""
+    contours = ob.rototoon.contours_layer
+    if not gp.is_named(name, contours):
+        return ""
+    begins = "is" if name == contours else "begins with"
+    return f'The layer "{name}" counts as contours, since its name {begins} "{contours}": choose a layer with another name for what is drawn'
+
+
 def need_some(layers: Iterable[bpy.types.bpy_struct], hidden: bool = False) -> None:
     """As `need_open`, if none of the layers may be written."""
     layers = list(layers)

@@ -30,7 +30,7 @@ from __future__ import annotations
 
 import json
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from itertools import islice, pairwise, permutations
@@ -67,6 +67,11 @@ class Slots:
             found += [each for each in _namings(self.now, then) if each not in found]
         return found
 
+    def of(self, content: st.Content) -> list[list[str]]:
+        """The names that the materials of a drawing's strokes may have had."""
+        # Blender numbers nothing anew where all strokes have the first material and no number. To change one it would need numbers.
+        return self.namings if "material_index" in content.curve else self.namings + self.then
+
 
 def _names(data) -> list[str]:
     return ["" if material is None else material.name for material in data.materials]
@@ -80,7 +85,8 @@ def _known(data) -> list[list[str]]:
         return []
 
 
-def _remember(data) -> None:
+def remember(data) -> None:
+    """Keeps the names of the material slots, by which looks that are noted now are told when a material gets another name."""
     now, known = _names(data), _known(data)
     if any(then[: len(now)] == now for then in known):
         return
@@ -121,7 +127,7 @@ def note(data, layer: str, frames: Iterable[int]) -> None:
         if content is not None and len(content.sizes):
             total = _combined(_rest(content, gp.FILL_BY_ID), content, names)
             gp.put(handle, gp.MARK, np.full(len(content.sizes), total, np.int32))
-    _remember(data)
+    remember(data)
 
 
 def make_the_artists(handle) -> None:
@@ -137,11 +143,9 @@ def untouched(content: st.Content, slots: Slots) -> bool | None:
     known = int(marks[0])
     if known == THE_ARTISTS or (marks != known).any():
         return False
-    # Blender numbers nothing anew where all strokes have the first material and no number. To change one it would need numbers.
-    namings = slots.namings if "material_index" in content.curve else slots.namings + slots.then
     for by_id in (gp.FILL_BY_ID, not gp.FILL_BY_ID):
         rest = _rest(content, by_id)
-        if any(_combined(rest, content, names) == known for names in namings):
+        if any(_combined(rest, content, names) == known for names in slots.of(content)):
             return True
     return False
 
@@ -152,7 +156,10 @@ def untouched_frames(data, layer: str) -> set[int]:
 
 
 def changed_frames(data, layer: str) -> list[int]:
-    """The frames of a layer whose drawings have the keyframe type "Generated", and that the artist has changed since."""
+    """The frames of a layer whose drawings have the keyframe type "Generated", and that the artist has changed since.
+
+    An empty drawing has no stroke to mark. Whoever draws there changes it: its strokes are not generated.
+    """
     return sorted(frame for frame, same in _told(data, layer).items() if same is False)
 
 
@@ -174,11 +181,18 @@ def _told(data, layer: str) -> dict[int, bool | None]:
     slots = Slots(data)
     with gp.copied(data) as copy:
         drawings = gp.drawings(gp.find_layer_of(copy, layer))
-        return {
-            frame: untouched(st.read(handle), slots)
-            for frame, (handle, kind) in drawings.items()
-            if kind == gp.GENERATED and gp.has(handle, gp.MARK)
-        }
+        return {frame: _as_generated(handle, slots) for frame, (handle, kind) in drawings.items() if kind == gp.GENERATED}
+
+
+def _as_generated(handle, slots: Slots) -> bool | None:
+    """As `untouched`, but a drawing without a mark is changed if the artist has drawn there."""
+    same = untouched(st.read(handle), slots) if gp.has(handle, gp.MARK) else None
+    return same if same is not None or all_made(handle) else False
+
+
+def all_made(handle) -> bool:
+    """Whether a drawing has no stroke of the artist."""
+    return bool(gp.value(handle, gp.MADE, len(gp.offsets(handle)) - 1).all())
 
 
 def _rest(content: st.Content, by_id: bool) -> int:
@@ -202,18 +216,45 @@ def _counting(content: st.Content, by_id: bool) -> Iterator[tuple[str, np.ndarra
                 yield name, _as_bytes(values) if content.kinds.get(name) == "BYTE_COLOR" else values
 
 
-def has_looks(content: st.Content, known: np.ndarray) -> np.ndarray:
-    """For each stroke: whether its look is the `known` one, noted in this Blender or in one that keeps fills another way."""
-    same = stroke_looks(content) == known
-    return same if same.all() else same | (stroke_looks(content, not gp.FILL_BY_ID) == known)
+def has_looks(content: st.Content, known: np.ndarray, slots: Slots, rests: Callable[[st.Content, bool], np.ndarray] | None = None) -> np.ndarray:
+    """For each stroke: whether its look is the `known` one, noted in this Blender or in one that keeps fills another way. `rests` are the
+    checksums of all but the material; by default those of `stroke_looks`."""
+    same = np.zeros(len(content.sizes), bool)
+    for by_id in (gp.FILL_BY_ID, not gp.FILL_BY_ID):
+        found = (rests or _look_rests)(content, by_id)
+        for names in slots.of(content):
+            same = same | (with_materials(found, content, names) == known)
+            if same.all():
+                return same
+    return same
 
 
-def stroke_looks(content: st.Content, by_id: bool | None = None) -> np.ndarray:
-    """A checksum of each stroke's look alone: int32, never 0. It does not depend on the other strokes of the drawing.
+def stroke_looks(content: st.Content, names: list[str], by_id: bool | None = None) -> np.ndarray:
+    """A checksum of each stroke's look alone: int32, never 0. It does not depend on the other strokes of the drawing. `names` are those of the
+    material slots.
 
     With `by_id` the attributes of fills count; by default as this Blender keeps them.
     """
-    by_id = gp.FILL_BY_ID if by_id is None else by_id
+    return with_materials(_look_rests(content, gp.FILL_BY_ID if by_id is None else by_id), content, names)
+
+
+def with_materials(rests: np.ndarray, content: st.Content, names: list[str]) -> np.ndarray:
+    """Checksums of strokes, combined with the names of their materials: int32, never 0."""
+    index = content.strokes("material_index").tolist()
+    sums = {k: zlib.crc32((names[k] if 0 <= k < len(names) else str(k)).encode()) for k in set(index)}
+    totals = rests ^ np.array([sums[k] for k in index], np.uint32)
+    return np.where(totals == 0, 1, totals).astype(np.uint32).view(np.int32)
+
+
+def numbered_looks(content: st.Content, by_id: bool) -> np.ndarray:
+    """As `stroke_looks`, with the numbers of the materials in place of their names."""
+    index = np.ascontiguousarray(content.strokes("material_index"), np.int32)
+    totals = [zlib.crc32(index[i : i + 1], total) or 1 for i, total in enumerate(_look_rests(content, by_id).tolist())]
+    return np.array(totals, np.uint32).view(np.int32)
+
+
+def _look_rests(content: st.Content, by_id: bool) -> np.ndarray:
+    """The checksum of each stroke's look but for the material: uint32."""
     totals, starts = [zlib.crc32(_SETTINGS[by_id])] * len(content.sizes), content.starts.tolist()
     for name, values in _counting(content, by_id):
         of_curve, named = name in content.curve, zlib.crc32(name.encode()).to_bytes(4, "little")
@@ -222,9 +263,7 @@ def stroke_looks(content: st.Content, by_id: bool | None = None) -> np.ndarray:
         for i, (a, b) in enumerate(pairwise(starts)):
             if uncommon[i] if of_curve else uncommon[a:b].any():
                 totals[i] = zlib.crc32(values[i : i + 1] if of_curve else values[a:b], zlib.crc32(named, totals[i]))
-    index = np.ascontiguousarray(content.strokes("material_index"), np.int32)
-    totals = [zlib.crc32(index[i : i + 1], total) or 1 for i, total in enumerate(totals)]
-    return np.array(totals, np.uint32).view(np.int32)
+    return np.array(totals, np.uint32)
 
 
 def _bytes(values: np.ndarray) -> np.ndarray:

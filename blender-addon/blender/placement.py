@@ -137,7 +137,7 @@ def moves(ob: bpy.types.Object, layers) -> bool:
     there = [layer for layer in layers if layer is not None]
     through_camera = settings.plane != "REFERENCE"
     shows = camera_of(ob) if through_camera else settings.reference
-    if any(is_animated(each) for each in (ob, shows, *(layer.parent for layer in there))):
+    if is_animated(ob) or is_animated(shows) or any(is_animated(layer.parent, carries=True) for layer in there):
         return True
     if any(hierarchy.is_animated(ob, layer.name) for layer in there):
         return True
@@ -149,13 +149,24 @@ def _changes_camera(scene: bpy.types.Scene) -> bool:
     return any(marker.camera not in (None, scene.camera) for marker in scene.timeline_markers)
 
 
-def is_animated(ob: bpy.types.Object | None) -> bool:
-    """Whether an object or one of its parents can move."""
+def is_animated(ob: bpy.types.Object | None, carries: bool = False) -> bool:
+    """Whether an object or one of its parents can move. With `carries`, the object is a parent itself."""
+    by_points = False
     while ob is not None:
         owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
-        if any(_has_motion(owner) for owner in owners) or len(ob.constraints):
+        if any(_has_motion(owner) for owner in owners) or len(ob.constraints) or (carries and _moves_children(ob, by_points)):
             return True
-        ob = ob.parent
+        by_points = ob.parent_type.startswith("VERTEX")
+        ob, carries = ob.parent, True
+    return False
+
+
+def _moves_children(ob: bpy.types.Object, by_points: bool) -> bool:
+    """Whether what an object carries can move though the object stays: with its bones, along it, or with its points."""
+    if ob.type == "ARMATURE":
+        return _has_motion(ob.data) or any(len(bone.constraints) for bone in ob.pose.bones)
+    if by_points or (ob.type == "CURVE" and ob.data.use_path):
+        return _has_motion(ob.data) or _has_motion(getattr(ob.data, "shape_keys", None)) or len(ob.modifiers) > 0
     return False
 
 

@@ -7,8 +7,8 @@ fields of an imported document as JSON, and they are in the document again.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -34,16 +34,24 @@ class Reading:
     corrections: dict[int, corrections.Corrections]
     document: dict[str, Any]
     folder: str
+    offset: int
+    """From picture numbers to scene frames."""
+    missing: dict[str, list[int]] = field(default_factory=dict)
+    """By part the scene frames without its contour within its track, as where the artist deleted it. Only with results."""
 
 
-def read(ob, results: bool = False, needed: bool = True) -> Reading:
-    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves. Raises `Problem` if
-    there is no layer of contours, unless they are not `needed`: then the document may have no parts."""
-    return jobs.drained(reading(ob, results, needed))
+def read(ob, results: bool = False, needed: bool = True, gaps: bool = False) -> Reading:
+    """Reads an object. Changes nothing. With `results`, the document has tracks, confidence and snapped curves. Tracks from which contours are
+    missing are left out, unless `gaps` are wanted. Raises `Problem` if there is no layer of contours, unless they are not `needed`: then the
+    document may have no parts."""
+    found = jobs.drained(reading(ob, results, needed))
+    if not gaps:
+        leave_out_missing(found)
+    return found
 
 
 def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
-    """As `read`, in steps between which Blender may draw. Returns the reading. Raises `Changed` as `contours.reading` does."""
+    """As `read` with `gaps`, in steps between which Blender may draw. Returns the reading. Raises `Changed` as `contours.reading` does."""
     settings = ob.rototoon
     pattern = footage.pattern_of(ob)
     found = yield from contours.reading(ob, (gp.CONFIDENCE,) if results else ())
@@ -64,9 +72,32 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
         for part in found.parts
         if part.keys
     ]
+    made = Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern), settings.frame_offset)
     if results:
-        _add_results(ob, document, found, mapper)
-    return Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern))
+        _add_results(ob, made)
+    return made
+
+
+def leave_out_missing(reading: Reading) -> str:
+    """Takes tracks out of the document from which contours are missing: a document has those on every frame. Of a part with one key, the frames
+    up to the missing ones stay. Returns what the artist is told."""
+    missing = reading.missing
+    parts = {part.name: part for part in reading.found.parts}
+    for entry in reading.document["parts"]:
+        if entry["name"] in missing:
+            _cut_track(entry, parts[entry["name"]], missing[entry["name"]], reading.offset)
+    said = ", ".join(f'"{name}", since its contours on {listed(frames)} are missing' for name, frames in missing.items())
+    return f"tracks are left out: {said}; Track draws them again" if said else ""
+
+
+def _cut_track(entry: dict[str, Any], part: contours.Part, missing: list[int], offset: int) -> None:
+    if len(part.keys) > 1:
+        del entry["tracks"], entry["confidence"]
+        return
+    (key,) = part.keys
+    after, before = max([-np.inf, *(f for f in missing if f < key)]), min([np.inf, *(f for f in missing if f > key)])
+    for name in ("tracks", "confidence"):
+        entry[name] = {label: values for label, values in entry[name].items() if after < int(label) + offset < before}
 
 
 def need_pictures(ob, reading: Reading) -> None:
@@ -157,10 +188,10 @@ def _part(part: contours.Part, mapper: Mapper, corrected: corrections.Correction
     return entry
 
 
-def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper: Mapper) -> None:
+def _add_results(ob, reading: Reading) -> None:
     offset = ob.rototoon.frame_offset
-    curves = snapping.read(ob)
-    for entry, part in zip(document["parts"], [part for part in found.parts if part.keys], strict=True):
+    found, curves = reading.found, snapping.read(ob)
+    for entry, part in zip(reading.document["parts"], [part for part in found.parts if part.keys], strict=True):
         item = next((item for item in ob.rototoon.parts if item.number == part.number), None)
 
         def hidden(frame: int, item=item, part=part) -> bool:
@@ -168,23 +199,16 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
 
         first, last = min(part.keys), max(part.keys)
         if first == last:
-            first, last = _around(part, first, hidden)
+            first, last = min([first, *part.made]), max([last, *part.made])
             wanted = _wanted(ob, part)
             if wanted:
                 entry["wants_key"] = wanted
         there = [frame for frame in range(first, last + 1) if not hidden(frame)]
-        if last > first and all(f in part.made or f in part.keys for f in there):
-            tracks, confidence = {}, {}
-            for frame in there:
-                label = str(frame - offset)
-                if frame in part.keys:
-                    tracks[label], confidence[label] = entry["keys"][label], [1.0] * part.count
-                    continue
-                stroke = part.made[frame]
-                tracks[label] = mapper.at(stroke.layer, frame).to_pixels(stroke.points).tolist()
-                sure = found.drawings[stroke.layer, frame].value(gp.CONFIDENCE)[stroke.span]
-                confidence[label] = sure.astype(np.float64).tolist()
-            entry["tracks"], entry["confidence"] = tracks, confidence
+        missing = [frame for frame in there if frame not in part.made and frame not in part.keys]
+        if last > first and (not missing or any(frame in part.made for frame in there)):
+            _add_track(entry, part, [frame for frame in there if frame not in missing], reading, offset)
+            if missing:
+                reading.missing[part.name] = missing
         paths = {
             str(frame - offset): [path.tolist() for path in segments]
             for (number, frame), segments in sorted(curves.items())
@@ -194,15 +218,18 @@ def _add_results(ob, document: dict[str, Any], found: contours.Contours, mapper:
             entry["curves"] = paths
 
 
-def _around(part: contours.Part, key: int, hidden: Callable[[int], bool]) -> tuple[int, int]:
-    """First and last frame around a part's only key, up to the first frame without its contour on which it is not hidden."""
-    first, last = key, key
-    low, high = min([key, *part.made]), max([key, *part.made])
-    while first > low and (first - 1 in part.made or hidden(first - 1)):
-        first -= 1
-    while last < high and (last + 1 in part.made or hidden(last + 1)):
-        last += 1
-    return first, last
+def _add_track(entry: dict[str, Any], part: contours.Part, frames: list[int], reading: Reading, offset: int) -> None:
+    tracks, confidence = {}, {}
+    for frame in frames:
+        label = str(frame - offset)
+        if frame in part.keys:
+            tracks[label], confidence[label] = entry["keys"][label], [1.0] * part.count
+            continue
+        stroke = part.made[frame]
+        tracks[label] = reading.mapper.at(stroke.layer, frame).to_pixels(stroke.points).tolist()
+        sure = reading.found.drawings[stroke.layer, frame].value(gp.CONFIDENCE)[stroke.span]
+        confidence[label] = sure.astype(np.float64).tolist()
+    entry["tracks"], entry["confidence"] = tracks, confidence
 
 
 def _wanted(ob, part: contours.Part) -> list[int]:

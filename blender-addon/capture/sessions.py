@@ -15,7 +15,7 @@ from rototoon import Session, match_contours
 
 @dataclass
 class Entry:
-    """A session, and the document without results that it got last."""
+    """A session, and the document without results that it tracked last. It may have another document by now."""
 
     session: Any
     folder: str

@@ -54,7 +54,7 @@ def note(ob, before: dict[Place, int]) -> str:
 
 def _looks(content: st.Content) -> np.ndarray:
     """The looks without fills as attributes, so that they are the same in every Blender: contours are lines."""
-    return marks.stroke_looks(content, by_id=False)
+    return marks.numbered_looks(content, by_id=False)
 
 
 def _drawings(ob, noted: bool) -> Iterator[tuple[str, int, st.Content]]:

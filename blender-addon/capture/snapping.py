@@ -9,6 +9,7 @@ makes these lines anew, as ever.
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import Any
 
 import numpy as np
@@ -74,9 +75,15 @@ def old_aside(ob) -> set[int]:
     layer, whole = aside(ob), gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None:
         return set()
-    drawings = {} if whole is None else gp.drawings(whole)
-    shown = {frame: st.shown_frame(whole, frame) if whole is not None else None for frame in gp.frame_numbers(layer)}
-    return {frame for frame, source in shown.items() if source is None or drawings[source][1] == gp.GENERATED}
+    generated = set() if whole is None else made_frames(whole)
+    shown = {frame: st.shown_frame(whole, frame) if whole is not None else None for frame in made_frames(layer)}
+    return {frame for frame, source in shown.items() if source is None or source in generated}
+
+
+def made_frames(layer) -> set[int]:
+    """The frames of a layer with snapped or hidden lines that may be drawn anew. Other drawings are the artist's as a whole, with the
+    snapped strokes on them."""
+    return {frame for frame, (_, kind) in gp.drawings(layer).items() if kind == gp.GENERATED}
 
 
 def clear_aside(ob) -> tuple[list[int], str]:
@@ -92,15 +99,15 @@ def clear_aside(ob) -> tuple[list[int], str]:
     return edited, ""
 
 
-def keep_edited(ob, frame: int | None = None, layer=None) -> list[int]:
-    """Makes snapped drawings that the artist changed the artist's, so that they are not written again: all, or that on `frame`.
+def keep_edited(ob, frames: Container[int] | None = None, layer=None) -> list[int]:
+    """Makes snapped drawings that the artist changed the artist's, so that they are not written again: all, or those on `frames`.
 
     `layer` is by default that of snapped lines. Returns their frames.
     """
     layer = layer or gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None:
         return []
-    edited = [each for each in marks.changed_frames(ob.data, layer.name) if frame in (None, each)]
+    edited = [each for each in marks.changed_frames(ob.data, layer.name) if frames is None or each in frames]
     gp.set_keyframe_type(layer, dict.fromkeys(edited, gp.KEYFRAME))
     return edited
 
@@ -111,8 +118,8 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
     Drawings that the artist changed are written too, unless `keep_edited` made them the artist's.
     """
     layer = gp.layer(ob, ob.rototoon.snapped_layer)
-    own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
-    old = {frame for frame in gp.drawings(layer) if frame not in own}
+    old = made_frames(layer)
+    own = set(gp.frame_numbers(layer)) - old
     parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
     kinds = found.own()
     style = {part.number: writing.styles(part, found, kinds) for part in parts}
@@ -203,7 +210,7 @@ def _older(ob, project: dict[str, Any]) -> dict[str, list[int]]:
     layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is None:
         return {}
-    own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED} | set(marks.changed_frames(ob.data, layer.name))
+    own = set(gp.frame_numbers(layer)) - made_frames(layer) | set(marks.changed_frames(ob.data, layer.name))
     found = {}
     for entry in project["parts"]:
         contours = {**entry["keys"], **entry.get("tracks", {})}

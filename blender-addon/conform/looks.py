@@ -7,7 +7,8 @@ Blender.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -15,12 +16,6 @@ from ..blender import grease_pencil as gp
 from ..blender import marks
 from ..blender import strokes as st
 from ..lines import drawings as dr
-
-WAYS = (
-    lambda content: marks.stroke_looks(content, True),
-    lambda content: marks.stroke_looks(content, False),
-    dr.look_sums,
-)
 
 
 def with_values(content: st.Content, values: Mapping[str, np.ndarray]) -> st.Content:
@@ -30,13 +25,24 @@ def with_values(content: st.Content, values: Mapping[str, np.ndarray]) -> st.Con
     return st.Content(content.sizes, content.types, point, curve, dict(content.kinds))
 
 
-def followed(content: st.Content, values: Mapping[str, np.ndarray]) -> np.ndarray:
-    """The noted looks of a drawing's strokes where its attributes get other values."""
+def followed(content: st.Content, values: Mapping[str, np.ndarray], slots: marks.Slots) -> np.ndarray:
+    """The noted looks of a drawing's strokes where its attributes get other values. `slots` are the material slots of the object."""
     known = content.strokes(gp.LOOK)
     if not known.any():
         return known
     found, after = known.copy(), with_values(content, values)
-    for way in WAYS:
+    for way in _ways(content, slots):
         same = (known != 0) & (way(content) == known)
         found[same] = way(after)[same]
     return found
+
+
+def _ways(content: st.Content, slots: marks.Slots) -> Iterator[Callable[[st.Content], np.ndarray]]:
+    """How the looks may have been noted."""
+    for by_id in (True, False):
+        for names in slots.of(content):
+            yield partial(marks.stroke_looks, names=names, by_id=by_id)
+            yield partial(dr.painted_looks, names=names, by_id=by_id)
+        yield partial(marks.numbered_looks, by_id=by_id)
+    yield dr.look_sums
+    yield dr.look_sums_without_fills

@@ -199,16 +199,17 @@ def _reading(ob, name: str, spans: Spans) -> Iterator[float]:
                 handle, kind = drawings[frame]
                 content = st.read(handle)
                 same = marks.untouched(content, slots)
-                made = kind == gp.GENERATED and (frame in spans.made or _is_result(content, same, painted))
+                made = kind == gp.GENERATED and (frame in spans.made or _is_result(content, same, slots if painted else None))
                 found.append(Drawing(frame, content, not made, marked=same is True, blank=not len(content.sizes)))
         yield 0.0
     return found
 
 
-def _is_result(content: st.Content, same: bool | None, painted: bool) -> bool:
-    """Whether a drawing on a generated frame is as it was generated. Without a mark, as on contours, the strokes tell."""
-    if painted:
-        return bool(sheets.made_of(content).all())
+def _is_result(content: st.Content, same: bool | None, painted: marks.Slots | None) -> bool:
+    """Whether a drawing on a generated frame is as it was generated. Without a mark, as on contours, the strokes tell.
+    `painted` are the material slots where it is paint."""
+    if painted is not None:
+        return bool(sheets.made_of(content, painted).all())
     made, tracked = content.strokes(gp.MADE) | content.strokes(gp.TWEENED), content.point.get(gp.TRACKED)
     moved = tracked is not None and same is not True and not np.array_equal(tracked, content.point["position"])
     return same is not False and bool(made.all()) and not moved

@@ -45,13 +45,13 @@ def preparing(ob, compared: comparing.Compared, times: Times, size: tuple[int, i
     frames = {drawing.frame for drawing in every}
     new = {frame for drawing in every for frame in drawing.places}
     placing = Placing(ob, names, {k: each for k, each in points.items() if len(each)}, frames, new, compared.found, size)
-    ready = Ready(made, {}, placing.still)
+    ready, slots = Ready(made, {}, placing.still), marks.Slots(ob.data)
     for layer in made.layers:
         for drawing in layer.drawings:
             for frame in drawing.places:
                 changed = placing.changed(layer.name, drawing.content, drawing.frame, frame)
                 if "radius" in changed:
-                    changed[gp.LOOK] = looks.followed(drawing.content, changed)
+                    changed[gp.LOOK] = looks.followed(drawing.content, changed, slots)
                 ready.changes[layer.name, drawing.frame, frame] = changed
             yield 0.0
     return ready

@@ -117,7 +117,7 @@ def need_open(ob, project: dict[str, Any]) -> None:
     """Raises a `Problem` if the document has drawings and the layer for them may not be written."""
     film = checked(project)
     if film.keys or film.traced or film.between:
-        guard.need_named(ob, [ob.rototoon.lines_layer])
+        guard.need_apart(ob, [ob.rototoon.lines_layer])
 
 
 def draw(ob, project: dict[str, Any]) -> given.Done:

@@ -42,12 +42,14 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
         snapping.write(ob, curves, found, mapper)
 
 
-def need_open(ob) -> None:
-    """Raises a `Problem` if the contours of an object cannot be replaced: the object or one of the layers is closed."""
+def need_open(ob, project: dict[str, Any]) -> None:
+    """Raises a `Problem` if the contours of an object cannot be replaced by those of a document: the object or one of the layers is closed."""
     guard.need(ob)
     settings = ob.rototoon
     guard.need_open(gp.layers(ob, settings.contours_layer) + gp.layers(ob, settings.snapped_layer), hidden=True)
     guard.need_named(ob, [settings.contours_layer, settings.snapped_layer], hidden=True)
+    if _curves(project, settings.frame_offset):
+        guard.need_apart(ob, [settings.snapped_layer], hidden=True)
 
 
 def _empty(ob) -> None:

@@ -307,6 +307,9 @@ def _write_curves(ob, reading: Reading, sent: Mapping[str, Any], taken: Mapping[
     layer = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if layer is not None and guard.closed(layer):
         return guard.left_out([layer])
+    why = guard.as_contours(ob, ob.rototoon.snapped_layer)
+    if why:
+        return why
     done.edited = snapping.keep_edited(ob)
     snapping.write(ob, snapping.read(ob) | curves, reading.found, reading.mapper)
     hidden, left = snapping.clear_aside(ob)

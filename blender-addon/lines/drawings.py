@@ -8,8 +8,9 @@ they stay as they are, and are not followed.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -137,14 +138,14 @@ def keep(ob, layer: Layer) -> None:
     gp.set_keyframe_type(target, dict.fromkeys(layer.edited, gp.KEYFRAME))
 
 
-def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
+def mark(content: st.Content, slots: marks.Slots, chosen: np.ndarray | None = None) -> None:
     """Notes for each point where it is, on which stroke, and where on it: an edit is measured from there. `chosen` are the strokes;
-    all by default."""
+    all by default. `slots` are the material slots of the drawing, which `marks.remember` shall keep."""
     points, tracks = content.point["position"], content.strokes(gp.TRACK)
     for name in (gp.TRACKED, gp.LINE, gp.ALONG):
         if name not in content.point:
             content.kinds[name], content.point[name] = gp.TYPES[name][0], gp.blank(name, len(points))
-    starts, looks = content.starts, marks.stroke_looks(content)
+    starts, looks = content.starts, marks.stroke_looks(content, slots.now)
     known = content.strokes(gp.LOOK).copy()
     content.set_strokes(gp.LOOK, looks if chosen is None else np.where(chosen, looks, known))
     for i in range(len(content.sizes)) if chosen is None else np.flatnonzero(chosen):
@@ -156,33 +157,72 @@ def mark(content: st.Content, chosen: np.ndarray | None = None) -> None:
 
 LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id", "hide_stroke")
 """What of a stroke counted as its look in files of versions without marks, and counts on painted ones."""
+_FILLS = ("fill_id", "hide_stroke")
+"""How Blender 5.1 and later keep fills. Earlier versions have these in the material."""
+
+
+def painted_looks(content: st.Content, names: list[str], by_id: bool | None = None) -> np.ndarray:
+    """Checksum of `LOOKS` of each stroke: int32. `names` and `by_id` are as for `marks.stroke_looks`."""
+    return marks.with_materials(_painted_rests(content, gp.FILL_BY_ID if by_id is None else by_id), content, names)
+
+
+def _painted_rests(content: st.Content, by_id: bool) -> np.ndarray:
+    """Checksum of `LOOKS` of each stroke but for the material: uint32."""
+    sides = [content.strokes(name) for name in ("fill_color", *(_FILLS if by_id else ()))]
+    found = [zlib.crc32(b"".join(np.ascontiguousarray(each[i]).tobytes() for each in sides), total) for i, total in enumerate(_point_sums(content))]
+    return np.array(found, np.uint32)
+
+
+def _point_sums(content: st.Content) -> list[int]:
+    """Checksum of those of `LOOKS` that are attributes of points, for each stroke."""
+    starts, points = content.starts, len(content.point["position"])
+    names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
+    values = [content.point[name] if name in content.point else gp.blank(name, points) for name in names]
+    found = []
+    for a, b in zip(starts, starts[1:]):
+        total = 0
+        for each in values:
+            total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
+        found.append(total)
+    return found
 
 
 def look_sums(content: st.Content) -> np.ndarray:
-    """Checksum of `LOOKS` of each stroke: int32."""
-    starts, points = content.starts, len(content.point["position"])
-    of_points = [content.point.get(name) for name in LOOKS if gp.TYPES[name][1] == "POINT"]
-    names = [name for name in LOOKS if gp.TYPES[name][1] == "POINT"]
-    of_points = [gp.blank(name, points) if each is None else each for name, each in zip(names, of_points)]
+    """Checksum of `LOOKS` of each stroke as earlier versions noted it, with the number of the material: int32."""
     of_strokes = [content.strokes(name) for name in LOOKS if gp.TYPES[name][1] == "CURVE" and name != "hide_stroke"]
     hidden = content.strokes("hide_stroke")
     found = np.zeros(len(content.sizes), np.int64)
-    for i, (a, b) in enumerate(zip(starts, starts[1:])):
-        total = 0
-        for each in of_points:
-            total = zlib.crc32(np.ascontiguousarray(each[a:b]), total)
+    for i, total in enumerate(_point_sums(content)):
         for each in of_strokes:
             total = zlib.crc32(np.ascontiguousarray(each[i]), total)
-        # Strokes whose line is shown have the sums of earlier versions.
+        # Strokes whose line is shown have the sums of still earlier versions.
         found[i] = zlib.crc32(b"hidden", total) if hidden[i] else total
     return found.astype(np.uint32).view(np.int32)
 
 
-def has_looks(content: st.Content) -> np.ndarray:
+def look_sums_without_fills(content: st.Content) -> np.ndarray:
+    """The same as noted in a Blender that has fills in the material."""
+    curve = {name: values for name, values in content.curve.items() if name not in _FILLS}
+    return look_sums(st.Content(content.sizes, content.types, content.point, curve, content.kinds))
+
+
+def has_looks(content: st.Content, slots: marks.Slots) -> np.ndarray:
     """For each stroke: whether its look is the one that was noted. What an earlier version noted counts as that version saw it."""
     known = content.strokes(gp.LOOK)
-    same = marks.has_looks(content, known)
-    return same if same.all() else same | (look_sums(content) == known)
+    older = (partial(marks.numbered_looks, by_id=gp.FILL_BY_ID), partial(marks.numbered_looks, by_id=not gp.FILL_BY_ID), look_sums)
+    return _or_older(marks.has_looks(content, known, slots), content, known, older)
+
+
+def has_painted_looks(content: st.Content, slots: marks.Slots) -> np.ndarray:
+    """The same for painted strokes."""
+    known = content.strokes(gp.LOOK)
+    return _or_older(marks.has_looks(content, known, slots, _painted_rests), content, known, (look_sums, look_sums_without_fills))
+
+
+def _or_older(same: np.ndarray, content: st.Content, known: np.ndarray, ways: Iterable[Callable[[st.Content], np.ndarray]]) -> np.ndarray:
+    for way in ways:
+        same = same if same.all() else same | (way(content) == known)
+    return same
 
 
 def shares(points: np.ndarray) -> np.ndarray:

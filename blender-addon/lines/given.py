@@ -71,7 +71,7 @@ class Done:
 
 def draw(ob, name: str, film: Film) -> Done:
     """Draws a film on the layer `name`, in the place of generated drawings there."""
-    guard.need_named(ob, [name])
+    guard.need_apart(ob, [name])
     target = gp.layer(ob, name)
     own = _cleared(ob, name, target, film)
     keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}
@@ -211,6 +211,7 @@ def _rows(ob, frame: int, strokes: list[tracing.Placed], mapper: Mapper, inks: I
     _tint(rows, strokes, shown)
     rows.values[gp.TRACK] = numbers
     rows.values[gp.LINE] = np.repeat(numbers, rows.sizes)
+    tracing.note_looks(rows, ob.data)
     if any(stroke.fields for stroke in strokes):
         rows.values[gp.FIELDS] = np.array([stroke.fields for stroke in strokes], np.int32)
     return rows

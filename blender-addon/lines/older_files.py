@@ -1,7 +1,8 @@
 """Marks for the generated drawings of files that a version without marks has saved (see `blender.marks`).
 
 When such a file is opened, its in-betweens, traced drawings and snapped lines are marked as they are, if what that version noted says that they
-are unchanged. So what an artist changes from then on counts in full. Snapped lines had no notes: all of them are marked.
+are unchanged. So what an artist changes from then on counts in full. Snapped lines had no notes: all of them are marked, but for drawings on
+which the artist has drawn too.
 A file of this version costs no look at its drawings.
 """
 
@@ -24,8 +25,8 @@ def mark(ob) -> None:
     _mark_traced(ob.data)
     snapped = gp.find_layer(ob, ob.rototoon.snapped_layer)
     if snapped is not None:
-        drawings = gp.drawings(snapped).items()
-        marks.note(ob.data, snapped.name, {frame for frame, (handle, kind) in drawings if kind == gp.GENERATED and not gp.has(handle, gp.MARK)})
+        unmarked = {frame: handle for frame, (handle, kind) in gp.drawings(snapped).items() if kind == gp.GENERATED and not gp.has(handle, gp.MARK)}
+        marks.note(ob.data, snapped.name, {frame for frame, handle in unmarked.items() if marks.all_made(handle)})
 
 
 def _mark_in_betweens(data) -> None:

@@ -148,7 +148,10 @@ class LinePairing(pairing.Pairing):
         self._ob.data.update_tag()
 
     def _store(self, layer: _Layer, record: records.Layer) -> None:
-        for frame, (handle, _) in gp.drawings(gp.find_layer(self._ob, layer.name)).items():
+        target = gp.find_layer(self._ob, layer.name)
+        # A drawing that several frames share would change with each of them, and before the later drawing too.
+        gp.make_own(target, [frame for frame in gp.frame_numbers(target) if frame >= layer.frames[1]])
+        for frame, (handle, _) in gp.drawings(target).items():
             starts = gp.offsets(handle)
             if frame < layer.frames[1] or len(starts) < 2:
                 continue

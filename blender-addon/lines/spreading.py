@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import marks
 from ..blender import strokes as st
 from . import drawings as dr
 
@@ -49,6 +50,8 @@ class Edit:
     """Numbers of all strokes that they come from."""
     deleted: set[int]
     """Numbers of strokes that are not there any more."""
+    slots: marks.Slots
+    """The material slots of the object."""
 
     def __bool__(self) -> bool:
         return bool(self.edited or self.deleted)
@@ -66,14 +69,14 @@ class Run:
     """Complex pixels: where each point was."""
 
 
-def found(content: st.Content, before: Sequence[int], mapping, chosen: np.ndarray | None = None) -> Edit:
+def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slots, chosen: np.ndarray | None = None) -> Edit:
     """The edit of a drawing. `before` are the numbers of its strokes when it was traced. Of edited strokes only the `chosen` ones
     count."""
     lines = content.point.get(gp.LINE)
     if lines is None:
-        return Edit(content, mapping, [], set(), set())
+        return Edit(content, mapping, [], set(), set(), slots)
     starts, tracks = content.starts, content.strokes(gp.TRACK)
-    same = dr.has_looks(content)
+    same = dr.has_looks(content, slots)
     moved = (content.point[gp.TRACKED] != content.point["position"]).any(1)
     twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
     edited, touched = [], set()
@@ -87,7 +90,7 @@ def found(content: st.Content, before: Sequence[int], mapping, chosen: np.ndarra
             edited.append(i)
             touched |= own
     there = set(lines.tolist()) | set(tracks.tolist())
-    return Edit(content, mapping, edited, touched, set(before) - there if chosen is None else set())
+    return Edit(content, mapping, edited, touched, set(before) - there if chosen is None else set(), slots)
 
 
 def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
@@ -125,7 +128,7 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
         # Curves with handles or knots stay.
         stay = [number for number, each in there.items() if each is None]
         gone |= np.isin(tracks, sorted(edit.touched)) & ~np.isin(tracks, stay)
-    return _assembled(content, gone, made), left_out
+    return _assembled(content, gone, made, edit.slots), left_out
 
 
 def to_complex(mapping, points: np.ndarray) -> np.ndarray:
@@ -317,7 +320,7 @@ def _have(made: st.Content, source: st.Content, name: str) -> None:
         made.kinds[name] = source.kinds[name] if name in source.kinds else gp.TYPES[name][0]
 
 
-def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]]) -> st.Content:
+def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]], slots: marks.Slots) -> st.Content:
     """The content without the strokes `gone`, with new strokes at the places that they take."""
     stay = np.flatnonzero(~gone)
     places = [(float(i), 0, k) for k, i in enumerate(stay)]
@@ -329,5 +332,5 @@ def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.C
         return whole
     result = st.chosen(whole, np.array([k for *_, k in sorted(places)]))
     new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
-    dr.mark(result, new)
+    dr.mark(result, slots, new)
     return result

@@ -163,7 +163,7 @@ def _need_unchanged(ob, names: list[str], plan: pl.Plan) -> None:
     missing = [name for name in names if plan.sums[name] and gp.find_layer(ob, name) is None]
     if missing:
         raise Problem(f'The layer "{missing[0]}" was removed during the work, so the result was dropped')
-    guard.need_named(ob, names)
+    guard.need_apart(ob, names)
     if {layer.name: layer.sums() for layer in dr.read(ob, names)} != {name: plan.sums[name] for name in names}:
         raise Problem("The drawings changed while they were traced, so the result was dropped: try again")
 
@@ -181,7 +181,7 @@ def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: reco
     """Gives the strokes of the artist's drawings their numbers, and makes changed traced drawings the artist's."""
     target = gp.find_layer(ob, layer.name)
     gp.make_own(target, layer.keys.keys() & group.seeds.keys())
-    handles = gp.drawings(target)
+    handles, slots = gp.drawings(target), marks.Slots(ob.data)
     for frame, seed in group.seeds.items():
         if frame not in layer.keys:
             continue
@@ -191,12 +191,13 @@ def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: reco
             if which == k:
                 numbered[index] = number
         content.set_strokes(gp.TRACK, numbered)
-        dr.mark(content)
+        dr.mark(content, slots)
         record.numbers[frame] = numbered.tolist()
         for name, values in ((gp.TRACK, numbered), (gp.LOOK, content.strokes(gp.LOOK))):
             gp.put(handles[frame][0], name, values)
         for name in (gp.TRACKED, gp.LINE, gp.ALONG):
             gp.put(handles[frame][0], name, content.point[name])
+    marks.remember(ob.data)
     dr.keep(ob, layer)
     done.kept += len(layer.edited)
 
@@ -296,6 +297,7 @@ def write(ob, layer: dr.Layer, mapper, k: int, placed, shown: looks.Looks, recor
     handles, names, own, materials = gp.drawings(target), shown.names(), shown.own(), materials_of(ob, placed, shown, known)
     for count, (frame, strokes) in enumerate(placed.items(), 1):
         rows = rows_of(frame, strokes, shown, names, materials, mapper.at(k, frame), own)
+        note_looks(rows, ob.data)
         stroke_rows.replace_made(handles[frame][0], rows)
         if gp.drawings(target)[frame][1] != gp.GENERATED:
             gp.set_keyframe_type(target, {frame: gp.GENERATED})
@@ -390,8 +392,14 @@ def rows_of(
         return rows
     rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
     _dress(rows, frame, strokes, shown, names, materials)
-    rows.values[gp.LOOK] = marks.stroke_looks(st.of_rows(rows))
     return rows
+
+
+def note_looks(rows: stroke_rows.Rows, data) -> None:
+    """Notes the looks of strokes of Grease Pencil data, so that a change of the artist shows."""
+    if len(rows.sizes):
+        rows.values[gp.LOOK] = marks.stroke_looks(st.of_rows(rows), marks.Slots(data).now)
+        marks.remember(data)
 
 
 def _dress(rows: stroke_rows.Rows, frame: int, strokes: list[Placed], shown: looks.Looks, names: list[str], materials) -> None:

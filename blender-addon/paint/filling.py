@@ -80,7 +80,7 @@ def finishing(ob, plan: pl.Plan, found: Filled) -> Iterator[float]:
     Raises a `Problem` if the artist's shapes have changed meanwhile.
     """
     guard.need(ob)
-    guard.need_named(ob, [plan.layer])
+    guard.need_apart(ob, [plan.layer])
     drawn = sheets.read(ob, plan.layer)
     if {frame: sheet.sum() for frame, sheet in drawn.items() if len(sheet.own)} != plan.sums:
         raise Problem("The paint changed while the drawings were filled, so the result was dropped: try again")

@@ -24,7 +24,7 @@ DISC = 0.008
 
 def need_open(ob) -> None:
     """Raises a `Problem` if the layer with paint may not be written."""
-    guard.need_named(ob, [ob.rototoon.fills_layer])
+    guard.need_apart(ob, [ob.rototoon.fills_layer])
 
 
 def draw(ob, clicks: Mapping[int, Sequence[Click]], regions: Mapping[int, list[painted.Region]]) -> int:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..blender import fill_materials, stroke_rows
+from ..blender import fill_materials, marks, stroke_rows
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..common import polygons
@@ -105,7 +105,8 @@ def rows(ob, regions: list[Region], mapping, palette: Palette, taken: Iterable[i
     if gp.FILL_BY_ID:
         found.values["fill_id"] = _fills([region.number for region in regions], set(taken))
         found.values["hide_stroke"] = np.ones(count, bool)
-    found.values[gp.LOOK] = dr.look_sums(st.of_rows(found)) if count else gp.blank(gp.LOOK, 0)
+    found.values[gp.LOOK] = dr.painted_looks(st.of_rows(found), marks.Slots(ob.data).now) if count else gp.blank(gp.LOOK, 0)
+    marks.remember(ob.data)
     return found
 
 

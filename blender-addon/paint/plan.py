@@ -58,7 +58,7 @@ def layer_name(ob) -> str:
     name = ob.rototoon.fills_layer
     if name in taken_names(ob):
         raise Problem(f'The layer "{name}" is for lines or contours: give paint a layer of its own, in the panel Paint')
-    guard.need_named(ob, [name])
+    guard.need_apart(ob, [name])
     return name
 
 

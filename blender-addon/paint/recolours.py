@@ -20,7 +20,7 @@ import bpy
 import numpy as np
 from rototoon.fills import Hue, Recolour
 
-from ..blender import fill_materials, guard, holds
+from ..blender import fill_materials, guard, holds, marks
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common.wording import listed
@@ -227,7 +227,7 @@ def _change(ob, layer, entry: Entry, place: int, done: Changed) -> None:
     masks = {frame: _masks(ob, sheet, entry) for frame, sheet in drawn.items() if entry.is_on(frame)}
     masks = {frame: mask for frame, mask in masks.items() if mask.any()}
     gp.make_own(layer, masks)
-    handles, numbers = gp.drawings(layer), {}
+    handles, numbers, slots = gp.drawings(layer), {}, marks.Slots(ob.data)
     spare = max((int(sheet.content.strokes(gp.TRACK).max(initial=0)) for sheet in drawn.values()), default=0) + 1
     for frame, mask in sorted(masks.items()):
         content = drawn[frame].content
@@ -236,8 +236,9 @@ def _change(ob, layer, entry: Entry, place: int, done: Changed) -> None:
             tracks[i] = numbers.setdefault(int(tracks[i]), spare + len(numbers))
         index[mask] = place
         content.set_strokes("material_index", index)
-        looks = np.where(mask, dr.look_sums(content), content.strokes(gp.LOOK))
+        looks = np.where(mask, dr.painted_looks(content, slots.now), content.strokes(gp.LOOK))
         for name, values in (("material_index", index), (gp.TRACK, tracks), (gp.LOOK, looks)):
             gp.put(handles[frame][0], name, values)
         done.frames.add(frame)
         done.regions += int(mask.sum())
+    marks.remember(ob.data)

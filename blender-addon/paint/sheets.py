@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..blender import grease_pencil as gp
-from ..blender import stroke_lines
+from ..blender import marks, stroke_lines
 from ..blender import strokes as st
 from ..common import polygons
 from ..lines import drawings as dr
@@ -51,16 +51,17 @@ def read(ob, name: str) -> dict[int, Sheet]:
     """The drawings of a layer by scene frame. Without the layer there are none."""
     with gp.copied(ob.data) as data:
         layer = gp.find_layer_of(data, name)
-        return {} if layer is None else {frame: of_drawing(*each) for frame, each in gp.drawings(layer).items()}
+        slots = marks.Slots(ob.data)
+        return {} if layer is None else {frame: of_drawing(*each, slots) for frame, each in gp.drawings(layer).items()}
 
 
-def of_drawing(handle, kind: str) -> Sheet:
-    """A drawing with a frame of this keyframe type."""
+def of_drawing(handle, kind: str, slots: marks.Slots) -> Sheet:
+    """A drawing with a frame of this keyframe type. `slots` are the material slots of its object."""
     content = st.read(handle)
-    return Sheet(content, made_of(content), kind)
+    return Sheet(content, made_of(content, slots), kind)
 
 
-def made_of(content: st.Content) -> np.ndarray:
+def made_of(content: st.Content, slots: marks.Slots) -> np.ndarray:
     """Which strokes are as painting made them."""
     made = content.strokes(gp.MADE).copy()
     if not made.any():
@@ -71,7 +72,7 @@ def made_of(content: st.Content) -> np.ndarray:
     starts = content.starts
     same = (changed[starts[1:]] == changed[starts[:-1]]) & content.strokes("cyclic")
     # A stroke that lost points has another sum: that of its look counts its points.
-    return made & same & (dr.look_sums(content) == content.strokes(gp.LOOK))
+    return made & same & dr.has_painted_looks(content, slots)
 
 
 @dataclass

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from ..blender import camera, guard
+from ..blender import camera, guard, marks
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..lines import doubts
@@ -88,7 +88,7 @@ def marked_regions(ob, frame: int) -> list[Marked]:
     at, handle, kind = shown
     if not gp.has(handle, gp.CONFIDENCE):
         return []
-    sheet, matrix = sheets.of_drawing(handle, kind), camera.layer_to_world(ob, layer)
+    sheet, matrix = sheets.of_drawing(handle, kind, marks.Slots(ob.data)), camera.layer_to_world(ob, layer)
     starts, numbers = sheet.content.starts, sheet.content.strokes(gp.TRACK)
     chosen = settings.fill_doubt_number if settings.fill_doubt_frame == at else 0
     found = []

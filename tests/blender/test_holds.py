@@ -75,6 +75,16 @@ def test_a_held_frame_that_a_key_covers_or_that_is_cleared_is_not_written(addon,
     assert "traced" not in exported(tmp_path / "cleared.json") and "rototoon_holds" not in ob.data
 
 
+def test_paint_that_is_cleared_is_not_held(addon, film, pictures, tmp_path):  # noqa: F811
+    fills = [{"frame": 1, "regions": [{"at": [50.0, 50.0], "colour": [0.2, 0.4, 0.9]}]}]
+    ob = taken(tmp_path / "twos.json", pictures, fills=fills, filled=[regions(frame) for frame in range(1, 7)])
+    assert [each["frame"] for each in exported(tmp_path / "painted.json")["filled"]] == list(range(1, 7))
+    assert kinds(addon, ob, "Paint") == {1: KEY, 3: MADE, 5: MADE}
+    bpy.ops.rototoon.clear_fills()
+    assert list(kinds(addon, ob, "Paint")) == [1] and "rototoon_holds" not in ob.data
+    assert [each["frame"] for each in exported(tmp_path / "cleared.json")["filled"]] == [1]
+
+
 def test_drawings_that_blender_holds_go_out_on_every_frame(addon, film, fake, pictures, tmp_path):  # noqa: F811
     import shutil
 

@@ -106,3 +106,22 @@ def test_the_new_layer_of_traced_lines_is_active(addon, library, tmp_path):
     ob.data.layers.active = shots.layer_of(ob)
     bpy.ops.rototoon.trace_drawing()
     assert ob.data.layers.active == shots.layer_of(ob), "afterwards the artist chooses"
+
+
+RESULTS = {"snap": ("snapped_layer", {}), "trace_drawing": ("lines_layer", {}), "paint_bucket": ("fills_layer", {"place": (30, 30)})}
+"""By button the setting with the layer on which it draws."""
+
+
+@pytest.mark.parametrize("call", RESULTS)
+@pytest.mark.parametrize("name", ["Contours Results", "Contours.results"])
+def test_a_layer_of_results_has_no_name_of_contours(addon, library, fake, tmp_path, call, name):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    setting, options = RESULTS[call]
+    setattr(ob.rototoon, setting, name)
+    before = shots.snapshot(ob)
+    with pytest.raises(RuntimeError, match=f'The layer "{name}" counts as contours, since its name begins with "Contours"'):
+        getattr(bpy.ops.rototoon, call)(**options)
+    assert shots.snapshot(ob) == before and name not in ob.data.layers
+    setattr(ob.rototoon, setting, "Contoursish")
+    assert getattr(bpy.ops.rototoon, call)(**options) == {"FINISHED"}

@@ -24,6 +24,21 @@ def test_a_wrong_identity_is_mended_from_a_frame_on(addon, traced):
     assert away(now[eyes[0]], ls.lines(5)[2][0]) < 1.5 and away(now[eyes[1]], ls.lines(5)[1][0]) < 1.5
 
 
+@pytest.mark.parametrize("shared", [(5, 6), (3, 4), (3, 6)])
+def test_an_identity_on_frames_that_share_a_drawing_is_mended_once(addon, traced, shared):
+    gp, layer = addon("blender.grease_pencil"), traced.data.layers["Lines"]
+    gp.remove_frames(layer, [shared[1]])
+    layer.frames.copy(*shared, instance_drawing=True)
+    eyes = [number_of(addon, traced, 1), number_of(addon, traced, 2)]
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.context.scene.frame_set(3)
+    assert bpy.ops.rototoon.match_lines(earlier=eyes[0], later=eyes[1]) == {"FINISHED"}
+    for frame in range(1, 7):
+        now = ls.strokes(addon, traced, "Lines", frame)
+        other = eyes if frame < 4 else eyes[::-1]
+        assert np.array_equal(now[eyes[0]], before[frame][other[0]]) and np.array_equal(now[eyes[1]], before[frame][other[1]]), frame
+
+
 def test_clicks_swap_free_and_undo(addon, traced):
     pairing = addon("lines.pairing")
     gp = addon("blender.grease_pencil")

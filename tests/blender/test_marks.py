@@ -125,17 +125,18 @@ def test_a_drawing_of_an_earlier_blender_is_untouched_when_its_fills_become_attr
 
 def test_a_look_noted_by_an_earlier_blender_stays_when_fills_become_attributes(addon, monkeypatch):
     marks, gp = addon("blender.marks"), addon("blender.grease_pencil")
-    handle = drawing(addon, keyed(addon, (1, 9)), "Lines", 1)
+    ob = keyed(addon, (1, 9))
+    handle, slots = drawing(addon, ob, "Lines", 1), marks.Slots(ob.data)
     monkeypatch.setattr(gp, "FILL_BY_ID", False)
-    noted = marks.stroke_looks(st_of(addon, handle))
+    noted = marks.stroke_looks(st_of(addon, handle), slots.now)
     monkeypatch.setattr(gp, "FILL_BY_ID", True)
-    at_first = marks.stroke_looks(st_of(addon, handle))
+    at_first = marks.stroke_looks(st_of(addon, handle), slots.now)
     gp.put(handle, "fill_id", np.array([1, 0, 2], np.int32))
     found = st_of(addon, handle)
-    assert marks.has_looks(found, noted).tolist() == [True, True, True]
-    assert marks.has_looks(found, at_first).tolist() == [False, True, False], "noted here, a fill is a look"
+    assert marks.has_looks(found, noted, slots).tolist() == [True, True, True]
+    assert marks.has_looks(found, at_first, slots).tolist() == [False, True, False], "noted here, a fill is a look"
     looks.CHANGES["radius"](addon, handle)
-    assert marks.has_looks(st_of(addon, handle), noted).tolist() == [True, True, False]
+    assert marks.has_looks(st_of(addon, handle), noted, slots).tolist() == [True, True, False]
 
 
 def st_of(addon, handle):

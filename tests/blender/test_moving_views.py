@@ -176,3 +176,80 @@ def test_corrections_of_a_document_come_in_through_a_moving_camera(addon, tmp_pa
     moving_camera()
     assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "given.json"), into="ACTIVE") == {"FINISHED"}
     assert drawn_on(addon, bpy.context.object, 5)[0] == pytest.approx([50.0, 40.0], abs=2e-3)
+
+
+def following(camera, keyed=True):
+    """Lets the camera follow a curve, as Blender's menu Parent › Follow Path does. Only the curve's data are animated."""
+    curve = bpy.data.curves.new("Path", "CURVE")
+    curve.dimensions = "3D"
+    spline = curve.splines.new("POLY")
+    spline.points.add(1)
+    spline.points[0].co, spline.points[1].co = (0, 0, 0, 1), (3, 0, 0, 1)
+    path = bpy.data.objects.new("Path", curve)
+    bpy.context.scene.collection.objects.link(path)
+    for ob in bpy.context.view_layer.objects:
+        ob.select_set(ob in (camera, path))
+    bpy.context.view_layer.objects.active = path
+    bpy.ops.object.parent_set(type="FOLLOW" if keyed else "OBJECT")
+    bpy.context.scene.frame_set(1)
+
+
+def on_bone(layer, constrained=True):
+    """Hangs a layer on a bone. It copies the place of an object that moves by half a unit, and the armature has no animation."""
+    armature = bpy.data.armatures.new("Rig")
+    rig, target = bpy.data.objects.new("Rig", armature), bpy.data.objects.new("Target", None)
+    for ob in (rig, target):
+        bpy.context.scene.collection.objects.link(ob)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = armature.edit_bones.new("Bone")
+    bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for frame, along in ((1, 0.0), (9, HALF)):
+        target.location = (along, 0, 0)
+        target.keyframe_insert("location", frame=frame)
+    if constrained:
+        rig.pose.bones["Bone"].constraints.new("COPY_LOCATION").target = target
+    layer.parent, layer.parent_bone = rig, "Bone"
+    bpy.context.scene.frame_set(1)
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_a_camera_that_follows_a_path(addon, tmp_path, moves):
+    ob = shots.set_up(tmp_path)
+    following(ob.rototoon.camera, moves)
+    assert addon("blender.placement").Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still != moves
+
+
+@pytest.mark.parametrize("moves", [True, False])
+def test_a_layer_on_a_bone_with_a_constraint(addon, tmp_path, moves):
+    ob = shots.set_up(tmp_path)
+    on_bone(shots.layer_of(ob), moves)
+    assert addon("blender.placement").Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still != moves
+
+
+def test_keys_are_the_same_on_whichever_frame_they_are_read(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    on_bone(shots.layer_of(ob))
+    scripting = addon("scripting")
+    scripting.set_key(ob, 1, {"square": shots.square(0)})
+    scripting.set_key(ob, 9, {"square": shots.square(8)})
+    read = addon("capture.document").read
+    documents = []
+    for frame in (1, 9):
+        bpy.context.scene.frame_set(frame)
+        documents.append(read(ob).document)
+    assert documents[0] == documents[1]
+    assert drawn_on(addon, ob, 9) == pytest.approx(shots.square(8), abs=2e-3)
+
+
+def test_a_camera_on_a_point_of_a_mesh_that_is_deformed(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    mesh = bpy.data.objects.new("Mesh", bpy.data.meshes.new("Mesh"))
+    bpy.context.scene.collection.objects.link(mesh)
+    mesh.modifiers.new("Wave", "WAVE")
+    camera, placement = ob.rototoon.camera, addon("blender.placement")
+    camera.parent = mesh
+    assert placement.Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still
+    camera.parent_type = "VERTEX"
+    assert not placement.Mapper(ob, [1, 9], {}, [ob.rototoon.contours_layer]).still

@@ -245,6 +245,18 @@ def test_clear_paint_leaves_what_the_artist_made(addon, painted):
     assert kinds(addon, painted, LAYER) == {1: "KEYFRAME"} and before.equals(read(addon, painted, 1))
 
 
+def test_clear_paint_on_frames_that_share_a_drawing(addon, painted):
+    gp, layer = addon("blender.grease_pencil"), painted.data.layers[LAYER]
+    own, generated = read(addon, painted, 1), read(addon, painted, 2)
+    addon("blender.strokes").write(handle_of(addon, painted, LAYER, 2), addon("blender.strokes").joined(generated, own))
+    for frame in (3, 4):
+        gp.remove_frames(layer, [frame])
+        layer.frames.copy(2, frame, instance_drawing=True)
+    bpy.ops.rototoon.clear_fills()
+    assert list(kinds(addon, painted, LAYER)) == [1, 2, 3, 4]
+    assert [len(read(addon, painted, frame).sizes) for frame in (1, 2, 3, 4)] == [len(own.sizes)] * 4
+
+
 def test_tracing_leaves_paint_alone(addon, painted):
     before = read(addon, painted, 3)
     bpy.ops.rototoon.trace_drawing()

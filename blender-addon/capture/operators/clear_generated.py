@@ -42,7 +42,8 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
             if guard.closed(layer):
                 continue
             drawings = gp.drawings(layer)
-            frames = [f for f in (old if layer == aside else drawings) if self.frames == "ALL" or f == current]
+            candidates = drawings if layer not in snapped else old if layer == aside else snapping.made_frames(layer)
+            frames = [f for f in candidates if self.frames == "ALL" or f == current]
             if keep:
                 kept += sum(writing.is_corrected(drawings[f][0]) for f in frames)
             cleared += writing.clear(layer, frames, keep_corrected=keep)
@@ -56,8 +57,8 @@ class ROTOTOON_OT_clear_generated(Guarded, WithGenerated, bpy.types.Operator):
 
     def _kept(self, ob, snapped: list, current: int) -> set[int]:
         """Makes snapped drawings that the artist changed the artist's. Returns their frames."""
-        frame = None if self.frames == "ALL" else current
-        return {number for layer in snapped if not guard.closed(layer) for number in snapping.keep_edited(ob, frame, layer)}
+        frames = None if self.frames == "ALL" else [current]
+        return {number for layer in snapped if not guard.closed(layer) for number in snapping.keep_edited(ob, frames, layer)}
 
 
 CLASSES = (ROTOTOON_OT_clear_generated,)

@@ -72,11 +72,7 @@ def hide(operator: Guarded, ob, found: contours.Contours, item, pictures: list[i
     frames = [picture + ob.rototoon.frame_offset for picture in pictures]
     corrected = [number for number in frames if _is_corrected(found, part, number)]
     _remove(gp.find_layer(ob, found.layer_names[part.layer]), part.number, frames)
-    snapped = [layer for layer in (gp.find_layer(ob, ob.rototoon.snapped_layer), snapping.aside(ob)) if layer is not None]
-    snapped = [layer for layer in snapped if _made(layer, part.number, frames)]
-    operator.warn(guard.left_out(snapped))
-    for layer in guard.open_layers(snapped):
-        _remove(layer, part.number, frames)
+    _remove_snapped(operator, ob, part.number, frames)
     if corrected:
         operator.warn(f"your corrections of it on {listed(corrected)} are gone: Undo brings them back")
     ob.data.update_tag()
@@ -96,6 +92,22 @@ def _is_corrected(found: contours.Contours, part: contours.Part, frame: int) -> 
     return stroke is not None and bool(found.drawings[stroke.layer, frame].corrected()[stroke.index])
 
 
+def _remove_snapped(operator: Guarded, ob, number: int, frames: list[int]) -> None:
+    """Removes the snapped and hidden lines of a part. Drawings there that are the artist's stay, and are named."""
+    layers = [layer for layer in (gp.find_layer(ob, ob.rototoon.snapped_layer), snapping.aside(ob)) if layer is not None]
+    shown = {layer.name: [frame for frame, (_, _, own) in _generated(layer, number, frames).items() if own.any()] for layer in layers}
+    layers = [layer for layer in layers if shown[layer.name]]
+    operator.warn(guard.left_out(layers))
+    left = set()
+    for layer in guard.open_layers(layers):
+        snapping.keep_edited(ob, frames, layer)
+        again = set(shown[layer.name]) & snapping.made_frames(layer)
+        left.update(set(shown[layer.name]) - again)
+        _remove(layer, number, sorted(again))
+    if left:
+        operator.warn(f"your snapped lines of it on {listed(sorted(left))} stay")
+
+
 def _remove(layer, number: int, frames: list[int]) -> None:
     """Removes the generated strokes of a part. A drawing that is empty then stays, so that no earlier one shows there."""
     data, name = layer.id_data, layer.name
@@ -108,15 +120,19 @@ def _remove(layer, number: int, frames: list[int]) -> None:
 
 def _made(layer, number: int, frames: list[int]) -> list[tuple]:
     """The drawings on some frames that have generated strokes of a part, each with which strokes these are."""
-    drawings, found = gp.drawings(layer), []
+    found = _generated(layer, number, frames).values()
+    # On an artist's frame on which every stroke is marked, the marks are old.
+    return [(handle, own) for handle, kind, own in found if own.any() and (kind == gp.GENERATED or not own.all())]
+
+
+def _generated(layer, number: int, frames: list[int]) -> dict[int, tuple]:
+    """By frame the drawing, its keyframe type, and which of its strokes are generated ones of a part."""
+    drawings, found = gp.drawings(layer), {}
     for frame in frames:
-        if frame not in drawings:
-            continue
-        handle, kind = drawings[frame]
-        strokes = len(gp.offsets(handle)) - 1
-        own = gp.value(handle, gp.MADE, strokes) & (gp.value(handle, gp.PART, strokes) == number)
-        if own.any() and (kind == gp.GENERATED or not own.all()):
-            found.append((handle, own))
+        if frame in drawings:
+            handle, kind = drawings[frame]
+            strokes = len(gp.offsets(handle)) - 1
+            found[frame] = handle, kind, gp.value(handle, gp.MADE, strokes) & (gp.value(handle, gp.PART, strokes) == number)
     return found
 
 

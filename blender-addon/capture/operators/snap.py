@@ -22,21 +22,18 @@ class ROTOTOON_OT_snap(Long, OnContours, bpy.types.Operator):
 
     def begin(self, context):
         self._ob = context.object
-        guard.need_named(self._ob, [self._ob.rototoon.snapped_layer])
-        self._reading = document.read(self._ob, results=True)
+        guard.need_apart(self._ob, [self._ob.rototoon.snapped_layer])
+        self._reading = document.read(self._ob, results=True, gaps=True)
         if not any("tracks" in part for part in self._reading.document["parts"]):
             raise Problem("Nothing to snap: press Track first")
-        entry = sessions.known(self._ob)
-        inputs = document.read(self._ob).document
-        if entry is None or entry.inputs != inputs or entry.folder != self._reading.folder:
-            entry = sessions.get(self._ob, self._reading.document, self._reading.folder)
-        self._session = entry.session
+        # What the file has: the session may have other contours, as before the artist moved or deleted some, or took a Track back.
+        self._session = sessions.get(self._ob, self._reading.document, self._reading.folder).session
         threads = preferences.threads()
         return jobs.Worker(lambda progress: self._session.snap(progress, threads=threads))
 
     def finish(self, context, work) -> str:
-        guard.need_named(self._ob, [self._ob.rototoon.snapped_layer])
-        reading = document.read(self._ob, results=True)
+        guard.need_apart(self._ob, [self._ob.rototoon.snapped_layer])
+        reading = document.read(self._ob, results=True, gaps=True)
         if reading.document != self._reading.document:
             raise Problem("The contours changed while they were snapped, so the result was dropped: press Snap again")
         identity.write(self._ob, reading.found, reading.decisions)

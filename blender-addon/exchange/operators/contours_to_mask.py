@@ -36,7 +36,7 @@ class ROTOTOON_OT_contours_to_mask(Guarded, OnContours, bpy.types.Operator):
         if known is not None:
             guard.need_own(known)
             masks.need_made(name)
-        reading = document.read(ob, results=True)
+        reading = document.read(ob, results=True, gaps=True)
         parts = outlines.outlines(reading.document, settings.frame_offset, self.use_snapped)
         if not parts:
             raise Problem("No part has a key yet: press Track, or New Key Here, first")

@@ -69,12 +69,13 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         why = OnShapes.lacking(context.object, self.changes) if self.layers == "ONE" else ""
         if why:
             raise Problem(why)
-        reading = document.read(context.object, results=True, needed=False)
+        reading = document.read(context.object, results=True, needed=False, gaps=True)
         document.need_pictures(context.object, reading)
-        beyond = document.reach(reading.document)
         older = snapping.older(context.object, reading.document)
         if older:
             self.warn(older)
+        self.warn(document.leave_out_missing(reading))
+        beyond = document.reach(reading.document)
         document.round_off(reading.document)
         lines = self._add_lines(context.object, reading.document)
         paint = self._add_paint(context.object, reading.document)

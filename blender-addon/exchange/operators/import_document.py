@@ -58,7 +58,7 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             ob = context.object
             if ob is None or ob.type != "GREASEPENCIL":
                 raise Problem("Make a Grease Pencil object active, or import into a new one")
-            importing.need_open(ob)
+            importing.need_open(ob, project)
             drawn.need_open(ob, project)
             filled.need_open(ob, project)
             with stage.tried(ob, shot):

@@ -69,7 +69,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         chosen = None
         if self.selected:
             chosen = selection.selected_strokes(gp.drawings(layer)[shown][0])
-        edit = spreading.found(contents[shown], record.numbers.get(shown, []), mapper.at(0, shown), chosen)
+        edit = spreading.found(contents[shown], record.numbers.get(shown, []), mapper.at(0, shown), marks.Slots(self._ob.data), chosen)
         if not self.delete:
             edit.deleted = set()
         if not (self.shape or self.look):
@@ -108,6 +108,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
             record.numbers[frame] = content.strokes(gp.TRACK).tolist()
             yield count / len(self._done)
         records.write(self._ob.data, kept)
+        marks.remember(self._ob.data)
         self._ob.data.update_tag()
         if self._left_out:
             curves = "1 stroke is a curve" if self._left_out == 1 else f"{self._left_out} strokes are curves"
@@ -128,7 +129,7 @@ def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:
     for i, number in numbers.items():
         tracks[i], chosen[i] = number, True
     content.set_strokes(gp.TRACK, tracks)
-    dr.mark(content, chosen)
+    dr.mark(content, edit.slots, chosen)
     return content
 
 

@@ -44,7 +44,7 @@ class ROTOTOON_OT_trace_image(Long, OnDrawing, bpy.types.Operator):
         self._ob, frame = context.object, context.scene.frame_current
         settings = self._ob.rototoon
         empty, self._home = reference_image(context), settings.lines_layer
-        guard.need_named(self._ob, [self._home])
+        guard.need_apart(self._ob, [self._home])
         (layer,) = dr.read(self._ob, [self._home])
         if frame in layer.kept:
             raise Problem(f"There is a drawing of yours on frame {frame} already: go to another frame")

@@ -96,7 +96,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
 
 def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
     """The plan for some layers and scene frames. Reads the layers, and changes nothing."""
-    guard.need_named(ob, names)
+    guard.need_apart(ob, names)
     wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
     return pl.make(ob, dr.read(ob, names, wanted), first, last, new)
 

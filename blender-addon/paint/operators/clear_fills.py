@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard
+from ...blender import guard, holds
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted
 from .. import sheets
@@ -27,13 +27,16 @@ class ROTOTOON_OT_clear_fills(Guarded, OnDrawing, bpy.types.Operator):
         layer = gp.find_layer(ob, ob.rototoon.fills_layer)
         guard.need_open([layer])
         drawn, removed = sheets.read(ob, layer.name), 0
+        mixed = {frame for frame, sheet in drawn.items() if len(sheet.own) and sheet.made.any()}
+        gp.make_own(layer, mixed)
         handles = gp.drawings(layer)
         for frame, sheet in drawn.items():
             removed += int(sheet.made.sum())
-            if len(sheet.own) and sheet.made.any():
+            if frame in mixed:
                 gp.remove_strokes(handles[frame][0], np.flatnonzero(sheet.made).tolist())
         empty = [frame for frame, sheet in drawn.items() if not len(sheet.own) and not sheet.blank]
         gp.remove_frames(layer, empty)
+        holds.forget(ob.data, layer.name)
         ob.data.update_tag()
         return f"{counted(removed, 'painted region')} removed"
 

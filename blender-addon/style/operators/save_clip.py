@@ -33,7 +33,9 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
         ob = context.object
         folder = folder_of(ob, self.folder)
         limbs.needed(ob)
-        project = document.read(ob, results=True).document
+        reading = document.read(ob, results=True, gaps=True)
+        project = reading.document
+        self.warn(document.leave_out_missing(reading))
         document.reach(project)
         character, offset = self.character or ob.name, ob.rototoon.frame_offset
         frames = (self.first - offset, self.last - offset) if self.last > self.first else (None, None)
