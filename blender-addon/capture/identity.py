@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import hierarchy
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from . import closing, correspondence, likeness, sessions
@@ -277,7 +278,7 @@ def _listing(entries: list[tuple[int, str]], frames: set[int] | None) -> str:
 
 
 def write(ob, found: Contours, decisions: Decisions) -> None:
-    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list.
+    """Writes decisions into strokes and the object's list of parts. Parts without a stroke stay in the list: see `drop_empty`.
 
     Locked layers are not written. The decisions on their strokes are made again at each reading.
     """
@@ -317,15 +318,11 @@ def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> No
 
 
 def write_parts(ob, found: Contours) -> None:
-    """Makes the object's list of parts equal to that of `found`."""
+    """Adds the parts of `found` that have strokes to the object's list of parts, and stores their numbers of points."""
     settings = ob.rototoon
-    kept = [part for part in found.parts if part.keys or part.made]
-    numbers = {part.number for part in kept}
-    for index in reversed(range(len(settings.parts))):
-        if settings.parts[index].number not in numbers:
-            settings.parts.remove(index)
+    drawn = [part for part in found.parts if part.keys or part.made]
     have = {entry.number: entry for entry in settings.parts}
-    for part in kept:
+    for part in drawn:
         entry = have.get(part.number)
         if entry is None:
             entry = settings.parts.add()
@@ -334,5 +331,40 @@ def write_parts(ob, found: Contours) -> None:
                 entry.closed = part.closed
             entry.depth, entry.extra = part.depth, part.extra
         entry.count = part.count
-    settings.next_number = max([settings.next_number] + [part.number + 1 for part in kept])
-    settings.active_part = min(settings.active_part, max(len(settings.parts) - 1, 0))
+    settings.next_number = max([settings.next_number] + [part.number + 1 for part in drawn])
+
+
+def drop_empty(ob, found: Contours) -> str:
+    """Removes parts without a stroke from the object's list of parts. Returns what is to be told of it; empty if there are none.
+
+    For buttons only, whose message names the parts. Parts of which another layer has strokes stay: it may be a layer of contours with
+    a new name.
+    """
+    settings = ob.rototoon
+    drawn = {part.number for part in found.parts if part.keys or part.made}
+    if all(item.number in drawn for item in settings.parts):
+        return ""
+    drawn |= _drawn_elsewhere(ob, found)
+    gone = [(item.number, item.name) for item in settings.parts if item.number not in drawn]
+    active = settings.active_part
+    chosen = settings.parts[active].number if active < len(settings.parts) else 0
+    for number, _ in gone:
+        settings.parts.remove(next(index for index, item in enumerate(settings.parts) if item.number == number))
+    numbers = [item.number for item in settings.parts]
+    settings.active_part = numbers.index(chosen) if chosen in numbers else min(active, max(len(numbers) - 1, 0))
+    if not gone:
+        return ""
+    return "; without a contour, and so no longer in the list: " + ", ".join(f'"{name}"' for _, name in gone)
+
+
+def _drawn_elsewhere(ob, found: Contours) -> set[int]:
+    """Numbers of the parts that have strokes on other layers than those of the contours and of results."""
+    numbers: set[int] = set()
+    snapped = ob.rototoon.snapped_layer
+    names = {layer.name for layer in gp.every_layer(ob)} - {*found.layer_names, snapped, snapped + hierarchy.ASIDE}
+    with gp.copied(ob.data) as data:
+        for name in names:
+            for handle in gp.handles(gp.find_layer_of(data, name)):
+                if gp.has(handle, gp.PART):
+                    numbers.update(gp.value(handle, gp.PART, len(gp.offsets(handle)) - 1).tolist())
+    return numbers

@@ -45,6 +45,8 @@ class Run:
     """What became of new strokes on tracked frames, for the message."""
     doubts: tuple[str, ...] = ()
     """New strokes that could be something else."""
+    dropped: str = ""
+    """Parts that left the list, for the message."""
 
 
 def contour_layers(ob) -> list:
@@ -84,10 +86,11 @@ def finish(ob, run: Run) -> int | None:
     return jobs.drained(finishing(ob, run))
 
 
-def finishing(ob, run: Run) -> Iterator[float]:
+def finishing(ob, run: Run, drop_empty: bool = False) -> Iterator[float]:
     """Writes the result of a run in steps, and yields the finished share. Returns the number of strokes.
 
-    If the object's document has changed since the run began, it writes nothing and returns `None`.
+    With `drop_empty`, parts without a stroke leave the list. If the object's document has changed since the run began, it writes nothing
+    and returns `None`.
     """
     guard.need(ob)
     reading = yield from document.reading(ob)
@@ -95,6 +98,7 @@ def finishing(ob, run: Run) -> Iterator[float]:
         return None
     yield 0.0
     identity.write(ob, reading.found, reading.decisions)
+    run.dropped = identity.drop_empty(ob, reading.found) if drop_empty else ""
     strokes = yield from writing_tracks(ob, reading, run.entry.session)
     note_ends(ob, reading, run.worker.result.ends)
     exchanged.note(ob, run.worker.result.exchanges)
