@@ -26,6 +26,10 @@ PART = "rototoon_part"
 """Number of the part of a stroke; 0 for a stroke without a part."""
 MADE = "rototoon_generated"
 """Whether tracking, snapping or tracing wrote the stroke."""
+BESIDE = "rototoon_beside"
+"""Whether a tracked stroke was written on a frame of the artist, beside the artist's strokes. See `capture.generated`."""
+POINTS = "rototoon_points"
+"""Number of points of a stroke when it was tracked; 0 where that is not known."""
 CONTROL = "rototoon_control"
 """For each drawn point the index of its control point; fractions are between two control points."""
 TRACKED = "rototoon_tracked"
@@ -93,6 +97,8 @@ TYPES = {
     "fill_opacity": ("FLOAT", "CURVE"),
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
+    BESIDE: ("BOOLEAN", "CURVE"),
+    POINTS: ("INT", "CURVE"),
     CENTER: ("FLOAT_VECTOR", "CURVE"),
     CONTROL: ("FLOAT", "POINT"),
     TRACKED: ("FLOAT_VECTOR", "POINT"),

@@ -46,7 +46,7 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
     """Gives every stroke without a part a part, in memory."""
     decisions = Decisions()
     for part in found.parts:
-        _recount(part, decisions)
+        _recount(part, found, decisions)
     loose, found.loose = found.loose, []
     for frame in sorted({stroke.frame for stroke in loose}):
         drawn = [stroke for stroke in loose if stroke.frame == frame]
@@ -73,13 +73,14 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
     return decisions
 
 
-def _recount(part: Part, decisions: Decisions) -> None:
+def _recount(part: Part, found: Contours, decisions: Decisions) -> None:
     """Sets the number of control points of a part with one key to the number of points that the artist drew there."""
     if len(part.keys) != 1:
         return
     stroke = next(iter(part.keys.values()))
     if len(stroke.points) != part.count:
         part.count = len(stroke.points)
+        found.old += part.made.values()
         part.made.clear()
         stroke.where, stroke.control = np.arange(part.count, dtype=np.float64), correspondence.identity(part.count)
         decisions.strokes.append((stroke, part, stroke.control))
@@ -314,6 +315,9 @@ def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> No
         control[stroke.span] = values
     gp.put(drawing.handle, gp.PART, numbers)
     gp.put(drawing.handle, gp.MADE, made)
+    if made.any() or drawing.has(gp.BESIDE):
+        # The frame is the artist's from now on.
+        gp.put(drawing.handle, gp.BESIDE, made)
     gp.put(drawing.handle, gp.CONTROL, control)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..blender import grease_pencil as gp
-from . import doubt
+from . import doubt, generated
 
 
 @dataclass(frozen=True)
@@ -109,11 +109,10 @@ def _count(stand: Stand, frame: int, handle, kind: str) -> None:
     strokes = len(starts) - 1
     if not strokes:
         return
-    made = gp.value(handle, gp.MADE, strokes)
-    # On an artist's frame on which every stroke is marked, the marks are old: somebody has copied a generated frame.
-    own = (np.diff(starts) > 0) & (~made if not made.all() else True)
+    made = generated.of(handle, kind)
+    own = (np.diff(starts) > 0) & ~made
     numbers = gp.value(handle, gp.PART, strokes)
-    stand.tracked += bool(made.any() and not made.all())
+    stand.tracked += bool(made.any())
     if own.any():
         stand.keys[frame] = stand.keys.get(frame, 0) + int(own.sum())
         shapes = gp.positions(handle, int(starts[-1]))[np.repeat(own, np.diff(starts))].tobytes()

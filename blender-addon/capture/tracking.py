@@ -17,7 +17,7 @@ from ..blender import guard, preferences
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.wording import counted, listed
-from . import document, ends, exchanged, identity, sessions, unseen, writing
+from . import corrections, document, ends, exchanged, identity, sessions, unseen, writing
 
 OUTWARD = "rototoon"
 """The method that tracks a part with one key outward from that key."""
@@ -44,7 +44,7 @@ class Run:
     taken: str = ""
     """What became of new strokes on tracked frames, for the message."""
     doubts: tuple[str, ...] = ()
-    """New strokes that could be something else."""
+    """New strokes that could be something else, and corrections that are lost."""
     dropped: str = ""
     """Parts that left the list, for the message."""
 
@@ -71,14 +71,15 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
     fixed = {part.name: reading.corrections[part.number] for part in reading.found.parts}
     moved = {name: own.whole for name, own in fixed.items() if own.whole}
     sought = {name: own.sought for name, own in fixed.items() if own.sought}
-    closed, new = reading.found.closed_names, _of_new(reading.decisions)
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, closed, moved, sought, entry, worker, *new)
+    taken = _of_new(reading.decisions)
+    doubts = (*reading.decisions.doubts, *corrections.lost(reading.found, preset == OUTWARD))
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, sought, entry, worker, taken, doubts)
 
 
-def _of_new(decisions: identity.Decisions) -> tuple[str, tuple[str, ...]]:
+def _of_new(decisions: identity.Decisions) -> str:
     taken, created = identity.named(decisions, decisions.on_tracked)
     said = f"; new strokes are keys of {taken}" if taken else ""
-    return said + (f"; new parts: {created}" if created else ""), tuple(decisions.doubts)
+    return said + (f"; new parts: {created}" if created else "")
 
 
 def finish(ob, run: Run) -> int | None:

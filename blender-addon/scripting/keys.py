@@ -12,7 +12,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
 from ..blender.errors import Problem
-from ..capture import closing, contours, correspondence, document, identity
+from ..capture import closing, contours, correspondence, document, generated, identity
 from ..common.operators import OnDrawing
 from .refusing import need, told
 
@@ -152,7 +152,8 @@ def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, ma
     """Adds strokes, points (N, 3) by part, to the drawing on a frame, in the place of earlier strokes of their parts."""
     layer = gp.find_layer(ob, layer_name)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
-    handle, _ = gp.drawings(layer)[frame]
+    handle, kind = gp.drawings(layer)[frame]
+    generated.settle(handle, kind)
     items = {item.name: item for item in ob.rototoon.parts}
     numbers = np.array([items[name].number for name in polygons], np.int32)
     strokes = len(gp.offsets(handle)) - 1
