@@ -28,6 +28,8 @@ MADE = "rototoon_generated"
 """Whether tracking, snapping or tracing wrote the stroke."""
 BESIDE = "rototoon_beside"
 """Whether a tracked stroke was written on a frame of the artist, beside the artist's strokes. See `capture.generated`."""
+OWNER = "rototoon_owner"
+"""The object to whose parts a contour belongs, by the object's `stamp`; 0 where that is not known."""
 POINTS = "rototoon_points"
 """Number of points of a stroke when it was tracked; 0 where that is not known."""
 CONTROL = "rototoon_control"
@@ -98,6 +100,7 @@ TYPES = {
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
     BESIDE: ("BOOLEAN", "CURVE"),
+    OWNER: ("INT", "CURVE"),
     POINTS: ("INT", "CURVE"),
     CENTER: ("FLOAT_VECTOR", "CURVE"),
     CONTROL: ("FLOAT", "POINT"),

@@ -139,6 +139,8 @@ class Contours:
     layer_names: list[str]
     closed: frozenset[int] = frozenset()
     """Indices of locked layers. They are read, but never written, so strokes without a part do not count there."""
+    stamp: int = 0
+    """That of the object; 0 if it has none yet."""
     old: list[Stroke] = field(default_factory=list)
     """Generated strokes of parts that have another number of points since then."""
 
@@ -170,7 +172,7 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
     layers = gp.layers(ob, settings.contours_layer)
     parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
     closed = frozenset(index for index, layer in enumerate(layers) if guard.closed(layer, hidden=True))
-    found = Contours({}, parts, [], [layer.name for layer in layers], closed)
+    found = Contours({}, parts, [], [layer.name for layer in layers], closed, settings.stamp)
     yield from _reading_drawings(ob, found, more)
     _take_handles(ob, found)
     by_number = {part.number: part for part in parts}
@@ -197,7 +199,7 @@ def _reading_drawings(ob, found: Contours, more: tuple[str, ...]) -> Iterator[fl
                 index, frame = place
                 if frame not in copies[index]:
                     raise Changed()
-                found.drawings[place] = read_drawing(*copies[index][frame], index, frame, more)
+                found.drawings[place] = read_drawing(*copies[index][frame], index, frame, more, found.stamp)
                 place = next(left, None)
                 if time.perf_counter() > until:
                     break
@@ -230,8 +232,9 @@ def _take_handles(ob, found: Contours) -> None:
         drawing.handle = own[index][frame][0]
 
 
-def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = ()) -> Drawing:
-    """The strokes of one drawing, with the attributes that are needed of them, and `more` if some are generated."""
+def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = (), stamp: int = 0) -> Drawing:
+    """The strokes of one drawing, with the attributes that are needed of them, and `more` if some are generated. Strokes of objects with
+    another `stamp` have no part."""
     starts = gp.offsets(handle)
     drawing = Drawing(starts, gp.positions(handle, int(starts[-1])), handle, kind, gp.names(handle))
     drawing.take(handle, *_IDENTITY)
@@ -240,12 +243,14 @@ def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...
     if not drawing.value(gp.MADE).all():
         drawing.own = own_attributes.of(handle)
         drawing.take(handle, *POINT_STYLE, *CURVE_STYLE, *drawing.own)
-    if kind != gp.GENERATED and drawing.has(gp.BESIDE):
-        drawing.take(handle, gp.BESIDE)
+    drawing.take(handle, *drawing.names & {gp.BESIDE, gp.OWNER})
     part, cyclic = drawing.value(gp.PART), drawing.value("cyclic")
     made, control = drawing.value(gp.MADE), drawing.value(gp.CONTROL)
     if kind != gp.GENERATED:
         made = generated.by_marks(made, drawing.value(gp.BESIDE) if drawing.has(gp.BESIDE) else None, kind)
+    if drawing.has(gp.OWNER):
+        foreign = generated.foreign(drawing.value(gp.OWNER), stamp)
+        part, made = np.where(foreign, 0, part), made & ~foreign
     bounds = starts.tolist()
     rows = zip(bounds, bounds[1:], part.tolist(), made.tolist(), cyclic.tolist())
     for i, (start, end, number, is_made, is_closed) in enumerate(rows):

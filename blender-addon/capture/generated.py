@@ -1,7 +1,7 @@
 """Which strokes of a drawing of contours are generated, and which are the artist's though Rototoon once wrote them.
 
 What: a stroke that tracking wrote has a mark (`MADE`). Copies that the artist makes have it too, and so do drawings of which the artist has
-changed the keyframe type. These are keys.
+changed the keyframe type. These are keys. Strokes that were copied from another object belong to none of this one's parts.
 
 How: on a frame of the artist a stroke is generated if it was written there, beside the artist's strokes. It has a second mark then (`BESIDE`),
 which no copy from a generated frame has. So the strokes that are left are generated also where the artist's own ones were deleted.
@@ -30,6 +30,11 @@ def by_marks(made: np.ndarray, beside: np.ndarray | None, kind: str) -> np.ndarr
     if beside is not None:
         return made & beside
     return np.zeros_like(made) if made.all() else made
+
+
+def foreign(owners: np.ndarray, stamp: int) -> np.ndarray:
+    """Which strokes belong to parts of another object, from which they were copied. `stamp` is that of this object."""
+    return (owners != 0) & (owners != stamp) & (stamp != 0)
 
 
 def settle(handle, kind: str) -> None:

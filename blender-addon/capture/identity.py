@@ -7,6 +7,7 @@ On a frame without tracked contours the matcher finds the whole figure. On a tra
 
 from __future__ import annotations
 
+import secrets
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -283,6 +284,7 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
 
     Locked layers are not written. The decisions on their strokes are made again at each reading.
     """
+    _give_stamp(ob, found)
     touched: dict[tuple[int, int], list[tuple[Stroke, Part, np.ndarray]]] = {}
     for entry in decisions.strokes:
         touched.setdefault((entry[0].layer, entry[0].frame), []).append(entry)
@@ -304,16 +306,27 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
     write_parts(ob, found)
 
 
+def _give_stamp(ob, found: Contours) -> None:
+    """Gives the object a stamp if it has none. It is the one that all its contours have, if parts and contours came from another object."""
+    settings = ob.rototoon
+    if not settings.stamp:
+        owners = {owner for drawing in found.drawings.values() for owner in drawing.value(gp.OWNER)[drawing.value(gp.PART) != 0].tolist()}
+        copied = len(settings.parts) and len(owners) == 1 and 0 not in owners
+        settings.stamp = owners.pop() if copied else secrets.randbelow(2**31 - 1) + 1
+    found.stamp = settings.stamp
+
+
 def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> None:
     drawing = found.drawings[place]
-    numbers, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.MADE, gp.CONTROL))
+    numbers, owners, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.OWNER, gp.MADE, gp.CONTROL))
     for stroke in drawing.strokes:
         if not stroke.made:
             made[stroke.index] = False
     for stroke, part, values in entries:
-        numbers[stroke.index] = part.number
+        numbers[stroke.index], owners[stroke.index] = part.number, found.stamp
         control[stroke.span] = values
     gp.put(drawing.handle, gp.PART, numbers)
+    gp.put(drawing.handle, gp.OWNER, owners)
     gp.put(drawing.handle, gp.MADE, made)
     if made.any() or drawing.has(gp.BESIDE):
         # The frame is the artist's from now on.

@@ -156,6 +156,7 @@ def laying_out(
     block.point["position"] = block.point[gp.TRACKED] = np.zeros((count, total, 3), np.float32)
     for name in (gp.PART, gp.MADE, gp.CENTER):
         block.curve[name] = _blanks(name, count, len(parts))
+    block.curve[gp.OWNER] = np.full((count, len(parts)), found.stamp, np.int32)
     block.curve[gp.POINTS] = np.repeat(sizes[None], count, 0)
     for index, part in enumerate(parts):
         _fill_part(block, index, part, tracks[part.number], mapper, fixed.get(part.number, Corrections()))

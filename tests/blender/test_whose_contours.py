@@ -218,3 +218,50 @@ def test_a_line_that_is_held_beyond_a_new_key_becomes_a_key(addon, fake, tmp_pat
     assert keys(addon, ob) == {"Part 1": [1, 5, 8], "Part 2": [1, 5]}
     assert np.array_equal(dict(shots.pixels(addon, ob, 8))[1], held)
     assert 'your corrections of "Part 2" on 7 are gone, since no key holds it there' in said(addon)
+
+
+def made_active(ob):
+    for each in bpy.context.view_layer.objects:
+        each.select_set(each == ob)
+    bpy.context.view_layer.objects.active = ob
+
+
+@pytest.mark.parametrize("tracked", [False, True])
+def test_a_contour_of_another_object_is_a_new_one(addon, fake, tmp_path, tracked):
+    """A key, or a tracked contour, that is pasted beside the tracked contours of this object."""
+    ob, other = shots.two_keys(addon, tmp_path), shots.two_keys(addon, tmp_path / "other")
+    for each in (ob, other):
+        made_active(each)
+        bpy.ops.rototoon.track()
+    in_edit_mode(addon, other, 3 if tracked else 1, 2, bpy.ops.grease_pencil.copy)
+    made_active(ob)
+    ob.data.layers.active = shots.layer_of(ob)
+    bpy.context.scene.frame_set(5)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.grease_pencil.paste()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    last_moved(addon, ob, 5, (90.0, -20.0))
+    assert len(shots.pixels(addon, ob, 5)) == 3
+    bpy.ops.rototoon.track()
+    assert keys(addon, ob) == {"Part 1": [1, 9], "Part 2": [1, 9], "Part 3": [5]}
+    assert ob.rototoon.stamp != other.rototoon.stamp
+    # From now on it is a contour of this object.
+    in_edit_mode(addon, ob, 5, 3, bpy.ops.grease_pencil.copy)
+    bpy.context.scene.frame_set(9)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.grease_pencil.paste()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert keys(addon, ob)["Part 3"] == [5, 9]
+
+
+def test_a_copy_of_the_drawings_with_the_list_of_parts_keeps_its_parts(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    copy = shots.set_up(tmp_path / "copy")
+    copy.data = ob.data.copy()
+    for part in ob.rototoon.parts:
+        item = copy.rototoon.parts.add()
+        item.number, item.name, item.closed, item.depth, item.count = part.number, part.name, part.closed, part.depth, part.count
+    bpy.ops.rototoon.track()
+    assert keys(addon, copy) == {"Part 1": [1, 9], "Part 2": [1, 9]}
+    assert copy.rototoon.stamp == ob.rototoon.stamp
