@@ -291,11 +291,14 @@ def _is_old(found: Contours, stroke: Stroke) -> bool:
 
 
 def _file_copy(found: Contours, stroke: Stroke, part: Part) -> None:
-    """Files a second generated stroke of a part on a frame. The one that is where tracking put it stays; the other one is the artist's."""
+    """Files a second generated stroke of a part on a frame. The one that is where tracking put it stays.
+
+    The other one is the artist's if it was moved, or pasted from another frame: tracking writes one stroke of a part on a layer.
+    """
     first = part.made[stroke.frame]
     kept, copy = (stroke, first) if _moved(found, first).any() and not _moved(found, stroke).any() else (first, stroke)
     part.made[stroke.frame] = kept
-    if _moved(found, copy).any():
+    if _moved(found, copy).any() or (copy.layer == kept.layer and not np.array_equal(copy.points, kept.points)):
         copy.made = False
         _loosen(found, copy)
 

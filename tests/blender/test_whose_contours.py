@@ -76,6 +76,20 @@ def test_a_duplicate_in_its_place_is_no_part(addon, fake, tmp_path):
     assert keys(addon, ob) == {"Part 1": [1, 9], "Part 2": [1, 9]} and len(shots.pixels(addon, ob, 5)) == 2
 
 
+def test_a_tracked_contour_that_is_pasted_on_another_tracked_frame_is_the_artists(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    pasted = dict(shots.pixels(addon, ob, 4))[2]
+    in_edit_mode(addon, ob, 4, 2, bpy.ops.grease_pencil.copy)
+    bpy.context.scene.frame_set(5)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.grease_pencil.paste()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.rototoon.track()
+    assert keys(addon, ob) == {"Part 1": [1, 9], "Part 2": [1, 5, 9]}
+    assert dict(shots.pixels(addon, ob, 5))[2] == pytest.approx(pasted, abs=1e-3)
+
+
 @pytest.mark.parametrize("moved", [True, False])
 def test_a_tracked_contour_that_is_pasted_on_a_key_frame_is_a_key(addon, fake, tmp_path, moved):
     ob = shots.set_up(tmp_path)
