@@ -175,6 +175,7 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
     found = Contours({}, parts, [], [layer.name for layer in layers], closed, settings.stamp)
     yield from _reading_drawings(ob, found, more)
     _take_handles(ob, found)
+    _take_pasted(found)
     by_number = {part.number: part for part in parts}
     for place in sorted(found.drawings, key=lambda place: (place[1], place[0])):
         for stroke in found.drawings[place].strokes:
@@ -249,8 +250,7 @@ def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...
     if kind != gp.GENERATED:
         made = generated.by_marks(made, drawing.value(gp.BESIDE) if drawing.has(gp.BESIDE) else None, kind)
     if drawing.has(gp.OWNER):
-        foreign = generated.foreign(drawing.value(gp.OWNER), stamp)
-        part, made = np.where(foreign, 0, part), made & ~foreign
+        part = np.where(generated.foreign(drawing.value(gp.OWNER), stamp), 0, part)
     bounds = starts.tolist()
     rows = zip(bounds, bounds[1:], part.tolist(), made.tolist(), cyclic.tolist())
     for i, (start, end, number, is_made, is_closed) in enumerate(rows):
@@ -258,6 +258,18 @@ def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...
         points = drawing.points[span]
         drawing.strokes.append(Stroke(layer, frame, i, span, number, is_made, is_closed, points, control[span]))
     return drawing
+
+
+def _take_pasted(found: Contours) -> None:
+    """Makes generated strokes without a part the artist's, as they were pasted from another layer or object.
+
+    A layer without any stroke of a part has come as a whole, such as by joining objects. Its generated strokes stay generated.
+    """
+    ours = {layer for (layer, _), drawing in found.drawings.items() if any(stroke.part for stroke in drawing.strokes)}
+    for (layer, _), drawing in found.drawings.items():
+        for stroke in drawing.strokes if layer in ours else ():
+            if stroke.made and not stroke.part:
+                stroke.made = False
 
 
 def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:

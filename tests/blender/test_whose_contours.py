@@ -279,3 +279,29 @@ def test_a_copy_of_the_drawings_with_the_list_of_parts_keeps_its_parts(addon, fa
     bpy.ops.rototoon.track()
     assert keys(addon, copy) == {"Part 1": [1, 9], "Part 2": [1, 9]}
     assert copy.rototoon.stamp == ob.rototoon.stamp
+
+
+def test_a_joined_object_brings_its_keys_as_new_parts(addon, fake, tmp_path):
+    ob, other = shots.two_keys(addon, tmp_path), shots.two_keys(addon, tmp_path / "other")
+    for each in (ob, other):
+        made_active(each)
+        bpy.ops.rototoon.track()
+    for frame in (1, 9):
+        for part in (1, 2):
+            shots.move(addon, other, frame, part, (20.0, -15.0))
+    made_active(ob)
+    other.select_set(True)
+    bpy.ops.object.join()
+    assert sorted(layer.name for layer in ob.data.layers) == ["Contours", "Contours.001"]
+    bpy.ops.rototoon.track()
+    assert keys(addon, ob) == {f"Part {number}": [1, 9] for number in (1, 2, 3, 4)}
+
+
+def test_a_traced_line_that_is_pasted_on_a_tracked_frame_is_a_new_contour(addon, fake, tmp_path):
+    ob, gp = shots.two_keys(addon, tmp_path), addon("blender.grease_pencil")
+    bpy.ops.rototoon.track()
+    drawing = shots.draw(addon, ob, 5, [np.array([[130.0, 5], [150, 5], [150, 10], [130, 12], [120, 9]])])
+    # Traced lines have the mark of generated strokes, and no part.
+    gp.put(drawing, gp.MADE, np.ones(3, bool))
+    bpy.ops.rototoon.track()
+    assert keys(addon, ob) == {"Part 1": [1, 9], "Part 2": [1, 9], "Part 3": [5]}
