@@ -26,6 +26,12 @@ PART = "rototoon_part"
 """Number of the part of a stroke; 0 for a stroke without a part."""
 MADE = "rototoon_generated"
 """Whether tracking, snapping or tracing wrote the stroke."""
+BESIDE = "rototoon_beside"
+"""Whether a tracked stroke was written on a frame of the artist, beside the artist's strokes. See `capture.generated`."""
+OWNER = "rototoon_owner"
+"""The object to whose parts a contour belongs, by the object's `stamp`; 0 where that is not known."""
+POINTS = "rototoon_points"
+"""Number of points of a stroke when it was tracked; 0 where that is not known."""
 CONTROL = "rototoon_control"
 """For each drawn point the index of its control point; fractions are between two control points."""
 TRACKED = "rototoon_tracked"
@@ -96,6 +102,9 @@ TYPES = {
     "fill_opacity": ("FLOAT", "CURVE"),
     PART: ("INT", "CURVE"),
     MADE: ("BOOLEAN", "CURVE"),
+    BESIDE: ("BOOLEAN", "CURVE"),
+    OWNER: ("INT", "CURVE"),
+    POINTS: ("INT", "CURVE"),
     CENTER: ("FLOAT_VECTOR", "CURVE"),
     CONTROL: ("FLOAT", "POINT"),
     TRACKED: ("FLOAT_VECTOR", "POINT"),

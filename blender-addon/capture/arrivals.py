@@ -6,6 +6,7 @@ looks. It acts only where the answer cannot become another one by what the artis
 - All contours are on one frame: each new one is a new part.
 - Every part has its contour on the frame: they are matched together, as Track does.
 
+Parts without a contour stay in the list: their contours may come back from the clipboard, or from a layer that has another name for a moment.
 Elsewhere the strokes wait for Track or Match Contours, and the panel says how many wait. Locked layers are left alone.
 
 A drawn line whose ends nearly meet is joined. Like the results of Live, the marks get no undo step of their own: they follow
@@ -114,15 +115,14 @@ def _is_certain(ob: bpy.types.Object, found: stand.Stand) -> bool:
     if found.strokes + found.tracked * max(len(ob.rototoon.parts), 1) > MOST:
         return False
     listed = {part.number for part in ob.rototoon.parts}
-    if not found.tracked and listed - found.numbers:
-        # The contours of a part were deleted.
-        return not found.loose or len(found.keys) <= 1
     if not found.loose:
         return bool(found.numbers - listed)
     if len(found.keys) == 1:
         return True
     few = sum(found.loose.values()) <= FEW
-    return few and bool(listed) and all(found.keys[frame] == len(listed) for frame in found.loose)
+    # Without tracked contours, parts whose contours were deleted are known.
+    drawn = listed if found.tracked else listed & found.numbers
+    return few and bool(drawn) and all(found.keys[frame] == len(drawn) for frame in found.loose)
 
 
 def _join_ends(found: contours.Contours, created: list[contours.Part]) -> None:

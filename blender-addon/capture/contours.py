@@ -1,9 +1,12 @@
 """Reads the strokes of the contour layers as parts with keys and generated contours. Changes nothing.
 
-A stroke is generated if tracking wrote it. All other strokes are the artist's keys. Two actions of the artist turn a generated
-stroke into a key: setting its frame's keyframe type to anything but "Generated", and changing its number of points. So each
-stroke is a key or not: parts may have keys on different frames, and a frame may have keys of some parts and generated strokes
-of others.
+A stroke is generated if tracking wrote it. All other strokes are the artist's keys. These actions of the artist turn a generated
+stroke into a key: setting its frame's keyframe type to anything but "Generated", changing its number of points, copying it onto a frame
+of the artist, and holding all its points beyond the keys of its part. So each stroke is a key or not: parts may have keys on different
+frames, and a frame may have keys of some parts and generated strokes of others.
+
+A copy of a generated stroke beside it, moved elsewhere, belongs to no part yet. Generated strokes of a part that has another number of points
+since then are neither: the next Track draws them again.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from ..blender import grease_pencil as gp
 from ..blender import guard, own_attributes
 from ..blender.errors import Changed
 from ..common import jobs
-from . import correspondence
+from . import correspondence, generated
 
 SLICE = 0.03
 """Seconds of reading for which one copy of the drawings is made. A copy of 200 drawings takes 0.002 s."""
@@ -60,7 +63,7 @@ CURVE_STYLE = (
     "end_cap", "u_translation", "u_scale", "uv_rotation", "uv_translation", "uv_scale",
 )  # fmt: skip
 _IDENTITY = (gp.PART, "cyclic", gp.MADE, gp.CONTROL)
-_OF_MADE = (gp.TRACKED, gp.PIN, gp.CENTER)
+_OF_MADE = (gp.TRACKED, gp.PIN, gp.CENTER, gp.POINTS)
 
 
 @dataclass
@@ -136,6 +139,10 @@ class Contours:
     layer_names: list[str]
     closed: frozenset[int] = frozenset()
     """Indices of locked layers. They are read, but never written, so strokes without a part do not count there."""
+    stamp: int = 0
+    """That of the object; 0 if it has none yet."""
+    old: list[Stroke] = field(default_factory=list)
+    """Generated strokes of parts that have another number of points since then."""
 
     @property
     def closed_names(self) -> tuple[str, ...]:
@@ -165,14 +172,16 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
     layers = gp.layers(ob, settings.contours_layer)
     parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
     closed = frozenset(index for index, layer in enumerate(layers) if guard.closed(layer, hidden=True))
-    found = Contours({}, parts, [], [layer.name for layer in layers], closed)
+    found = Contours({}, parts, [], [layer.name for layer in layers], closed, settings.stamp)
     yield from _reading_drawings(ob, found, more)
     _take_handles(ob, found)
+    _take_pasted(found)
     by_number = {part.number: part for part in parts}
     for place in sorted(found.drawings, key=lambda place: (place[1], place[0])):
         for stroke in found.drawings[place].strokes:
             _file(found, stroke, by_number.get(stroke.part))
         yield 0.0
+    _keep_beyond(found)
     _take_confidence(found)
     return found
 
@@ -191,7 +200,7 @@ def _reading_drawings(ob, found: Contours, more: tuple[str, ...]) -> Iterator[fl
                 index, frame = place
                 if frame not in copies[index]:
                     raise Changed()
-                found.drawings[place] = read_drawing(*copies[index][frame], index, frame, more)
+                found.drawings[place] = read_drawing(*copies[index][frame], index, frame, more, found.stamp)
                 place = next(left, None)
                 if time.perf_counter() > until:
                     break
@@ -224,21 +233,24 @@ def _take_handles(ob, found: Contours) -> None:
         drawing.handle = own[index][frame][0]
 
 
-def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = ()) -> Drawing:
-    """The strokes of one drawing, with the attributes that are needed of them, and `more` if some are generated."""
+def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...] = (), stamp: int = 0) -> Drawing:
+    """The strokes of one drawing, with the attributes that are needed of them, and `more` if some are generated. Strokes of objects with
+    another `stamp` have no part."""
     starts = gp.offsets(handle)
-    strokes, total = len(starts) - 1, int(starts[-1])
-    drawing = Drawing(starts, gp.positions(handle, total), handle, kind, gp.names(handle))
+    drawing = Drawing(starts, gp.positions(handle, int(starts[-1])), handle, kind, gp.names(handle))
     drawing.take(handle, *_IDENTITY)
     if drawing.value(gp.MADE).any():
         drawing.take(handle, *_OF_MADE, *more)
     if not drawing.value(gp.MADE).all():
         drawing.own = own_attributes.of(handle)
         drawing.take(handle, *POINT_STYLE, *CURVE_STYLE, *drawing.own)
+    drawing.take(handle, *drawing.names & {gp.BESIDE, gp.OWNER})
     part, cyclic = drawing.value(gp.PART), drawing.value("cyclic")
     made, control = drawing.value(gp.MADE), drawing.value(gp.CONTROL)
-    if kind != gp.GENERATED and made.all():
-        made = np.zeros(strokes, bool)
+    if kind != gp.GENERATED:
+        made = generated.by_marks(made, drawing.value(gp.BESIDE) if drawing.has(gp.BESIDE) else None, kind)
+    if drawing.has(gp.OWNER):
+        part = np.where(generated.foreign(drawing.value(gp.OWNER), stamp), 0, part)
     bounds = starts.tolist()
     rows = zip(bounds, bounds[1:], part.tolist(), made.tolist(), cyclic.tolist())
     for i, (start, end, number, is_made, is_closed) in enumerate(rows):
@@ -248,6 +260,18 @@ def read_drawing(handle, kind: str, layer: int, frame: int, more: tuple[str, ...
     return drawing
 
 
+def _take_pasted(found: Contours) -> None:
+    """Makes generated strokes without a part the artist's, as they were pasted from another layer or object.
+
+    A layer without any stroke of a part has come as a whole, such as by joining objects. Its generated strokes stay generated.
+    """
+    ours = {layer for (layer, _), drawing in found.drawings.items() if any(stroke.part for stroke in drawing.strokes)}
+    for (layer, _), drawing in found.drawings.items():
+        for stroke in drawing.strokes if layer in ours else ():
+            if stroke.made and not stroke.part:
+                stroke.made = False
+
+
 def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
     """Adds a stroke to its part, if it is the part's first stroke on the frame."""
     if part is None or len(stroke.points) == 0:
@@ -255,10 +279,14 @@ def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
             _loosen(found, stroke)
         return
     if stroke.made and len(stroke.points) != part.count:
+        if _is_old(found, stroke):
+            found.old.append(stroke)
+            return
         stroke.made = False
     if stroke.made:
         stroke.where = _whole(part.count)
-        part.made.setdefault(stroke.frame, stroke)
+        if part.made.setdefault(stroke.frame, stroke) is not stroke:
+            _file_copy(found, stroke, part)
         return
     stroke.where = where_of(stroke, part)
     if stroke.where is None or stroke.frame in part.keys:
@@ -266,6 +294,45 @@ def _file(found: Contours, stroke: Stroke, part: Part | None) -> None:
         return
     part.keys[stroke.frame] = stroke
     part.layer = stroke.layer
+
+
+def _is_old(found: Contours, stroke: Stroke) -> bool:
+    """Whether a generated stroke has the number of points with which it was tracked, so that its part has changed and not the stroke."""
+    points = int(found.drawings[stroke.layer, stroke.frame].value(gp.POINTS)[stroke.index])
+    return points == len(stroke.points) if points else correspondence.is_identity(stroke.control, len(stroke.points))
+
+
+def _file_copy(found: Contours, stroke: Stroke, part: Part) -> None:
+    """Files a second generated stroke of a part on a frame. The one that is where tracking put it stays.
+
+    The other one is the artist's if it was moved, or pasted from another frame: tracking writes one stroke of a part on a layer.
+    """
+    first = part.made[stroke.frame]
+    kept, copy = (stroke, first) if _moved(found, first).any() and not _moved(found, stroke).any() else (first, stroke)
+    part.made[stroke.frame] = kept
+    if _moved(found, copy).any() or (copy.layer == kept.layer and not np.array_equal(copy.points, kept.points)):
+        copy.made = False
+        _loosen(found, copy)
+
+
+def _moved(found: Contours, stroke: Stroke) -> np.ndarray:
+    """Which points of a generated stroke are not where tracking put them."""
+    return (found.drawings[stroke.layer, stroke.frame].value(gp.TRACKED)[stroke.span] != stroke.points).any(1)
+
+
+def _keep_beyond(found: Contours) -> None:
+    """Makes keys of generated strokes of which the artist holds all points, beyond the keys of their parts. Track would remove them."""
+    for part in found.parts:
+        if len(part.keys) < 2:
+            continue
+        first, last = min(part.keys), max(part.keys)
+        for frame, stroke in list(part.made.items()):
+            if first <= frame <= last:
+                continue
+            pinned = found.drawings[stroke.layer, frame].value(gp.PIN)[stroke.span]
+            if (pinned | _moved(found, stroke)).all():
+                stroke.made = False
+                part.keys[frame] = part.made.pop(frame)
 
 
 def _loosen(found: Contours, stroke: Stroke) -> None:

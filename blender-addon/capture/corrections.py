@@ -18,7 +18,8 @@ import numpy as np
 
 from ..blender import grease_pencil as gp
 from ..blender.placement import Mapper
-from .contours import Contours, Part
+from ..common.wording import listed
+from .contours import Contours, Part, Stroke
 
 MOVED = 0.05
 """Pixels. A smaller shift is no movement. This is far above the error of single precision, and far below what a hand does on
@@ -85,6 +86,32 @@ def _of_part(
         if has_center:
             corrections.centers[frame] = center[:2]
     return corrections
+
+
+def lost(found: Contours, outward: bool) -> list[str]:
+    """What is to be told of corrections that the next Track removes. `outward` is whether it tracks parts with one key."""
+    recounted: dict[str, set[int]] = {}
+    names = {part.number: part.name for part in found.parts}
+    for stroke in found.old:
+        if _is_corrected(found, stroke):
+            recounted.setdefault(names[stroke.part], set()).add(stroke.frame)
+    beyond: dict[str, set[int]] = {}
+    for part in found.parts:
+        tracked = len(part.keys) > 1 or outward
+        frames = [frame for frame in part.made.keys() - part.keys.keys() if not tracked or not correctable(part.keys, frame)]
+        frames = {frame for frame in frames if _is_corrected(found, part.made[frame])}
+        if frames:
+            beyond[part.name] = frames
+    reasons = ((recounted, "its keys have another number of points"), (beyond, "no key holds it there"))
+    return [
+        f'your corrections of "{name}" on {listed(sorted(frames))} are gone, since {reason}: Undo brings them back'
+        for lost_ones, reason in reasons
+        for name, frames in lost_ones.items()
+    ]
+
+
+def _is_corrected(found: Contours, stroke: Stroke) -> bool:
+    return stroke.layer not in found.closed and bool(found.drawings[stroke.layer, stroke.frame].corrected()[stroke.index])
 
 
 def correctable(keys, frame: int) -> bool:

@@ -7,11 +7,13 @@ On a frame without tracked contours the matcher finds the whole figure. On a tra
 
 from __future__ import annotations
 
+import secrets
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..blender import grease_pencil as gp
+from ..blender import hierarchy
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from . import closing, correspondence, likeness, sessions
@@ -45,7 +47,7 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
     """Gives every stroke without a part a part, in memory."""
     decisions = Decisions()
     for part in found.parts:
-        _recount(part, decisions)
+        _recount(part, found, decisions)
     loose, found.loose = found.loose, []
     for frame in sorted({stroke.frame for stroke in loose}):
         drawn = [stroke for stroke in loose if stroke.frame == frame]
@@ -72,13 +74,14 @@ def decide(found: Contours, mapper: Mapper, next_number: int) -> Decisions:
     return decisions
 
 
-def _recount(part: Part, decisions: Decisions) -> None:
+def _recount(part: Part, found: Contours, decisions: Decisions) -> None:
     """Sets the number of control points of a part with one key to the number of points that the artist drew there."""
     if len(part.keys) != 1:
         return
     stroke = next(iter(part.keys.values()))
     if len(stroke.points) != part.count:
         part.count = len(stroke.points)
+        found.old += part.made.values()
         part.made.clear()
         stroke.where, stroke.control = np.arange(part.count, dtype=np.float64), correspondence.identity(part.count)
         decisions.strokes.append((stroke, part, stroke.control))
@@ -277,10 +280,11 @@ def _listing(entries: list[tuple[int, str]], frames: set[int] | None) -> str:
 
 
 def write(ob, found: Contours, decisions: Decisions) -> None:
-    """Writes decisions into strokes and the object's list of parts. Parts without a stroke are removed from the list.
+    """Writes decisions into strokes and the object's list of parts. Parts without a stroke stay in the list: see `drop_empty`.
 
     Locked layers are not written. The decisions on their strokes are made again at each reading.
     """
+    _give_stamp(ob, found)
     touched: dict[tuple[int, int], list[tuple[Stroke, Part, np.ndarray]]] = {}
     for entry in decisions.strokes:
         touched.setdefault((entry[0].layer, entry[0].frame), []).append(entry)
@@ -302,30 +306,40 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
     write_parts(ob, found)
 
 
+def _give_stamp(ob, found: Contours) -> None:
+    """Gives the object a stamp if it has none. It is the one that all its contours have, if parts and contours came from another object."""
+    settings = ob.rototoon
+    if not settings.stamp:
+        owners = {owner for drawing in found.drawings.values() for owner in drawing.value(gp.OWNER)[drawing.value(gp.PART) != 0].tolist()}
+        copied = len(settings.parts) and len(owners) == 1 and 0 not in owners
+        settings.stamp = owners.pop() if copied else secrets.randbelow(2**31 - 1) + 1
+    found.stamp = settings.stamp
+
+
 def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> None:
     drawing = found.drawings[place]
-    numbers, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.MADE, gp.CONTROL))
+    numbers, owners, made, control = (drawing.value(name).copy() for name in (gp.PART, gp.OWNER, gp.MADE, gp.CONTROL))
     for stroke in drawing.strokes:
         if not stroke.made:
             made[stroke.index] = False
     for stroke, part, values in entries:
-        numbers[stroke.index] = part.number
+        numbers[stroke.index], owners[stroke.index] = part.number, found.stamp
         control[stroke.span] = values
     gp.put(drawing.handle, gp.PART, numbers)
+    gp.put(drawing.handle, gp.OWNER, owners)
     gp.put(drawing.handle, gp.MADE, made)
+    if made.any() or drawing.has(gp.BESIDE):
+        # The frame is the artist's from now on.
+        gp.put(drawing.handle, gp.BESIDE, made)
     gp.put(drawing.handle, gp.CONTROL, control)
 
 
 def write_parts(ob, found: Contours) -> None:
-    """Makes the object's list of parts equal to that of `found`."""
+    """Adds the parts of `found` that have strokes to the object's list of parts, and stores their numbers of points."""
     settings = ob.rototoon
-    kept = [part for part in found.parts if part.keys or part.made]
-    numbers = {part.number for part in kept}
-    for index in reversed(range(len(settings.parts))):
-        if settings.parts[index].number not in numbers:
-            settings.parts.remove(index)
+    drawn = [part for part in found.parts if part.keys or part.made]
     have = {entry.number: entry for entry in settings.parts}
-    for part in kept:
+    for part in drawn:
         entry = have.get(part.number)
         if entry is None:
             entry = settings.parts.add()
@@ -334,5 +348,40 @@ def write_parts(ob, found: Contours) -> None:
                 entry.closed = part.closed
             entry.depth, entry.extra = part.depth, part.extra
         entry.count = part.count
-    settings.next_number = max([settings.next_number] + [part.number + 1 for part in kept])
-    settings.active_part = min(settings.active_part, max(len(settings.parts) - 1, 0))
+    settings.next_number = max([settings.next_number] + [part.number + 1 for part in drawn])
+
+
+def drop_empty(ob, found: Contours) -> str:
+    """Removes parts without a stroke from the object's list of parts. Returns what is to be told of it; empty if there are none.
+
+    For buttons only, whose message names the parts. Parts of which another layer has strokes stay: it may be a layer of contours with
+    a new name.
+    """
+    settings = ob.rototoon
+    drawn = {part.number for part in found.parts if part.keys or part.made}
+    if all(item.number in drawn for item in settings.parts):
+        return ""
+    drawn |= _drawn_elsewhere(ob, found)
+    gone = [(item.number, item.name) for item in settings.parts if item.number not in drawn]
+    active = settings.active_part
+    chosen = settings.parts[active].number if active < len(settings.parts) else 0
+    for number, _ in gone:
+        settings.parts.remove(next(index for index, item in enumerate(settings.parts) if item.number == number))
+    numbers = [item.number for item in settings.parts]
+    settings.active_part = numbers.index(chosen) if chosen in numbers else min(active, max(len(numbers) - 1, 0))
+    if not gone:
+        return ""
+    return "; without a contour, and so no longer in the list: " + ", ".join(f'"{name}"' for _, name in gone)
+
+
+def _drawn_elsewhere(ob, found: Contours) -> set[int]:
+    """Numbers of the parts that have strokes on other layers than those of the contours and of results."""
+    numbers: set[int] = set()
+    snapped = ob.rototoon.snapped_layer
+    names = {layer.name for layer in gp.every_layer(ob)} - {*found.layer_names, snapped, snapped + hierarchy.ASIDE}
+    with gp.copied(ob.data) as data:
+        for name in names:
+            for handle in gp.handles(gp.find_layer_of(data, name)):
+                if gp.has(handle, gp.PART):
+                    numbers.update(gp.value(handle, gp.PART, len(gp.offsets(handle)) - 1).tolist())
+    return numbers

@@ -14,8 +14,8 @@ before it happens, since the generators know Blender's data. A result of which o
 result, and redo still works. So a step of Blender may contain an edit without its result. After undo and redo, the object is
 read and tracked again (the session knows most spans), and missing results are written. Writing adds no undo step, so this ends.
 
-**Pauses.** Live waits during rendering and playback, and while a tool of Blender or of this add-on runs (a drag, a brush stroke),
-since these use the strokes. Blender runs no timers in background; scripts call `step`.
+**Pauses.** Live waits during rendering and playback, while another scene is shown, and while a tool of Blender or of this add-on runs
+(a drag, a brush stroke), since these use the strokes. Blender runs no timers in background; scripts call `step`.
 
 After a file is opened, nothing is tracked before the first edit. The content of the file counts as tracked.
 """
@@ -208,6 +208,8 @@ def step(now: float | None = None) -> float | None:
         return None
     if held_off():
         return BLOCKED
+    if _slices is not None and _object(_slices.uid) is None:
+        drop_slices()
     now = time.monotonic() if now is None else now
     until = time.perf_counter() + SLICE
     if _slices is not None or _run is not None:
@@ -217,7 +219,9 @@ def step(now: float | None = None) -> float | None:
     windows.redraw_views()
     if _slices is not None:
         return SOON
-    return POLL if _run is not None or _due else None
+    if _run is None and all(_object(uid) is None for uid in _due):
+        return BLOCKED if _due else None
+    return POLL
 
 
 def _work(uid: int, begin: Callable[[], Iterator[float]], why: Why | None, until: float) -> None:
@@ -318,6 +322,11 @@ def _object(uid: int) -> bpy.types.Object | None:
     return next((ob for ob in bpy.context.scene.objects if ob.session_uid == uid and _is_live(ob)), None)
 
 
+def _is_elsewhere(uid: int) -> bool:
+    """Whether the object is live in other scenes than the one that is shown. It stays due until one of them is."""
+    return any(ob.session_uid == uid and bool(ob.users_scene) and _is_live(ob) for ob in bpy.data.objects)
+
+
 def _settled(uid: int, now: float) -> bool:
     return uid in _due and now - _due[uid].since >= DELAY
 
@@ -338,7 +347,9 @@ def _attending(now: float) -> Iterator[float]:
     if not run.worker.advance():
         return
     _run = None
-    if ob is None:
+    if ob is None and _is_elsewhere(run.uid):
+        _due_again(run.uid, Why.AGAIN)
+    elif ob is None:
         _forget(run.uid)
     elif not run.worker.cancelled:
         yield from _ending(ob, run)
@@ -376,8 +387,10 @@ def _due_again(uid: int, why: Why) -> None:
 def _begin_next(now: float, until: float) -> None:
     """Begins a run for the first due object that needs one."""
     for uid in [uid for uid in _due if _settled(uid, now)]:
-        why = _due.pop(uid).why
         ob = _object(uid)
+        if ob is None and _is_elsewhere(uid):
+            continue
+        why = _due.pop(uid).why
         if ob is None:
             _forget(uid)
             continue

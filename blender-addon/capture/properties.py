@@ -181,3 +181,5 @@ class CaptureSettings:
         name="Active Part", description="Index in the parts of the one that is chosen in the list. Operators for the chosen part work on it", default=0
     )
     next_number: bpy.props.IntProperty(default=1)
+    # It tells contours of the object from those that were pasted from another one, whose parts have other numbers. 0: not known yet.
+    stamp: bpy.props.IntProperty(default=0)

@@ -14,7 +14,7 @@ import numpy as np
 from bpy.app.handlers import persistent
 
 from ..blender import grease_pencil as gp
-from . import doubt
+from . import doubt, generated
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def read(ob: bpy.types.Object) -> Stand:
     with gp.copied(ob.data) as data:
         for name in names:
             for frame, (handle, kind) in gp.drawings(data.layers[name]).items():
-                _count(stand, frame, handle, kind)
+                _count(stand, frame, handle, kind, settings.stamp)
                 _note_held(stand, frame, handle, kind)
                 _note_least(least, frame, handle, kind)
                 if frame == current:
@@ -101,7 +101,7 @@ def read(ob: bpy.types.Object) -> Stand:
     return stand
 
 
-def _count(stand: Stand, frame: int, handle, kind: str) -> None:
+def _count(stand: Stand, frame: int, handle, kind: str, stamp: int) -> None:
     if kind == gp.GENERATED:
         stand.tracked += 1
         return
@@ -109,11 +109,11 @@ def _count(stand: Stand, frame: int, handle, kind: str) -> None:
     strokes = len(starts) - 1
     if not strokes:
         return
-    made = gp.value(handle, gp.MADE, strokes)
-    # On an artist's frame on which every stroke is marked, the marks are old: somebody has copied a generated frame.
-    own = (np.diff(starts) > 0) & (~made if not made.all() else True)
-    numbers = gp.value(handle, gp.PART, strokes)
-    stand.tracked += bool(made.any() and not made.all())
+    foreign = generated.foreign(gp.value(handle, gp.OWNER, strokes), stamp)
+    made = generated.of(handle, kind) & ~foreign
+    own = (np.diff(starts) > 0) & ~made
+    numbers = np.where(foreign, 0, gp.value(handle, gp.PART, strokes))
+    stand.tracked += bool(made.any())
     if own.any():
         stand.keys[frame] = stand.keys.get(frame, 0) + int(own.sum())
         shapes = gp.positions(handle, int(starts[-1]))[np.repeat(own, np.diff(starts))].tobytes()

@@ -17,7 +17,7 @@ from ..blender import guard, preferences
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.wording import counted, listed
-from . import document, ends, exchanged, identity, sessions, unseen, writing
+from . import corrections, document, ends, exchanged, identity, sessions, unseen, writing
 
 OUTWARD = "rototoon"
 """The method that tracks a part with one key outward from that key."""
@@ -44,7 +44,9 @@ class Run:
     taken: str = ""
     """What became of new strokes on tracked frames, for the message."""
     doubts: tuple[str, ...] = ()
-    """New strokes that could be something else."""
+    """New strokes that could be something else, and corrections that are lost."""
+    dropped: str = ""
+    """Parts that left the list, for the message."""
 
 
 def contour_layers(ob) -> list:
@@ -69,14 +71,15 @@ def begin(ob, reading: document.Reading, preset: str) -> Run:
     fixed = {part.name: reading.corrections[part.number] for part in reading.found.parts}
     moved = {name: own.whole for name, own in fixed.items() if own.whole}
     sought = {name: own.sought for name, own in fixed.items() if own.sought}
-    closed, new = reading.found.closed_names, _of_new(reading.decisions)
-    return Run(ob.session_uid, reading.document, ob.rototoon.preset, closed, moved, sought, entry, worker, *new)
+    taken = _of_new(reading.decisions)
+    doubts = (*reading.decisions.doubts, *corrections.lost(reading.found, preset == OUTWARD))
+    return Run(ob.session_uid, reading.document, ob.rototoon.preset, reading.found.closed_names, moved, sought, entry, worker, taken, doubts)
 
 
-def _of_new(decisions: identity.Decisions) -> tuple[str, tuple[str, ...]]:
+def _of_new(decisions: identity.Decisions) -> str:
     taken, created = identity.named(decisions, decisions.on_tracked)
     said = f"; new strokes are keys of {taken}" if taken else ""
-    return said + (f"; new parts: {created}" if created else ""), tuple(decisions.doubts)
+    return said + (f"; new parts: {created}" if created else "")
 
 
 def finish(ob, run: Run) -> int | None:
@@ -84,10 +87,11 @@ def finish(ob, run: Run) -> int | None:
     return jobs.drained(finishing(ob, run))
 
 
-def finishing(ob, run: Run) -> Iterator[float]:
+def finishing(ob, run: Run, drop_empty: bool = False) -> Iterator[float]:
     """Writes the result of a run in steps, and yields the finished share. Returns the number of strokes.
 
-    If the object's document has changed since the run began, it writes nothing and returns `None`.
+    With `drop_empty`, parts without a stroke leave the list. If the object's document has changed since the run began, it writes nothing
+    and returns `None`.
     """
     guard.need(ob)
     reading = yield from document.reading(ob)
@@ -95,6 +99,7 @@ def finishing(ob, run: Run) -> Iterator[float]:
         return None
     yield 0.0
     identity.write(ob, reading.found, reading.decisions)
+    run.dropped = identity.drop_empty(ob, reading.found) if drop_empty else ""
     strokes = yield from writing_tracks(ob, reading, run.entry.session)
     note_ends(ob, reading, run.worker.result.ends)
     exchanged.note(ob, run.worker.result.exchanges)

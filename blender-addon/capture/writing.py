@@ -17,7 +17,7 @@ from ..blender import own_attributes, stroke_rows
 from ..blender.errors import Changed
 from ..blender.placement import Mapper
 from ..common import jobs
-from . import absence, correspondence, weights
+from . import absence, correspondence, generated, weights
 from .contours import CURVE_STYLE, POINT_STYLE, Contours, Drawing, Part, Stroke
 from .corrections import Corrections
 
@@ -156,6 +156,8 @@ def laying_out(
     block.point["position"] = block.point[gp.TRACKED] = np.zeros((count, total, 3), np.float32)
     for name in (gp.PART, gp.MADE, gp.CENTER):
         block.curve[name] = _blanks(name, count, len(parts))
+    block.curve[gp.OWNER] = np.full((count, len(parts)), found.stamp, np.int32)
+    block.curve[gp.POINTS] = np.repeat(sizes[None], count, 0)
     for index, part in enumerate(parts):
         _fill_part(block, index, part, tracks[part.number], mapper, fixed.get(part.number, Corrections()))
         _fill_style(block, index, part, found)
@@ -240,10 +242,14 @@ def write_steps(layer, block: Block, before: Iterable[int], read: Mapping[int, n
     written, and the artist's change stays.
     """
     data, name = layer.id_data, layer.name
+    generated.give_back(layer)
     wanted = {int(frame): row for row, frame in enumerate(block.frames) if block.present[row].any()}
     old = wanted.keys() & set(gp.frame_numbers(layer))
     keys = weights.Keys(layer)
     gp.make_frames(layer, wanted, gp.GENERATED)
+    own = {frame for frame, (_, kind) in gp.drawings(layer).items() if kind != gp.GENERATED}
+    beside = np.array([frame in own for frame in block.frames.tolist()], bool)
+    block.curve[gp.BESIDE] = np.repeat(beside[:, None], len(block.sizes), 1)
     yield 0.0
     left = list(wanted.items())
     while left:
@@ -340,17 +346,13 @@ def clear(layer, frames: Iterable[int], keep_corrected: bool = False) -> int:
         if frame not in drawings:
             continue
         handle, kind = drawings[frame]
-        starts = gp.offsets(handle)
-        strokes = len(starts) - 1
-        made = gp.value(handle, gp.MADE, strokes)
-        if kind != gp.GENERATED and made.all():
-            continue
+        made = generated.of(handle, kind)
         if keep_corrected and is_corrected(handle):
             continue
         if made.any():
             cleared += 1
             gp.remove_strokes(handle, np.flatnonzero(made).tolist())
-        if kind == gp.GENERATED and made.all():
+        if made.all() and (kind == gp.GENERATED or len(made)):
             gone.append(frame)
     gp.remove_frames(layer, gone)
     return cleared

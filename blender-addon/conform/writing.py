@@ -15,7 +15,7 @@ from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 from ..blender import guard, marks, stage
 from ..blender import strokes as st
-from ..capture import sessions
+from ..capture import generated, sessions
 from . import comparing, layers, looks, notes, plan
 from .placing import Placing
 from .times import Times
@@ -104,12 +104,15 @@ def _write(ob, made: plan.Layer, changes: Changes) -> None:
     met = {drawing.joined for drawing in made.drawings if drawing.joined is not None}
     changed = {new for new, drawing in by_target.items() if changes[made.name, drawing.frame, new] or drawing.drop or drawing.keys.get(new)}
     gp.make_own(layer, changed | met)
+    kinds = {frame: kind for frame, (_, kind) in gp.drawings(layer).items()}
     handles = {frame: handle for frame, (handle, _) in gp.drawings(layer).items()}
     for new in sorted(changed):
         drawing = by_target[new]
         values = changes[made.name, drawing.frame, new]
         for name, each in values.items():
             gp.put(handles[new], name, each)
+        if drawing.keys.get(new):
+            generated.settle(handles[new], kinds[new])
         for stroke in drawing.keys.get(new, ()):
             _make_key(handles[new], stroke)
         if drawing.drop and drawing.results:

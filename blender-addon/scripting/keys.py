@@ -12,7 +12,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
 from ..blender.errors import Problem
-from ..capture import closing, contours, correspondence, document, identity
+from ..capture import closing, contours, correspondence, document, generated, identity
 from ..common.operators import OnDrawing
 from .refusing import need, told
 
@@ -43,7 +43,7 @@ def set_key(
     placement.view_of(ob)
     frame = _frame(ob, frame)
     name = layer or ob.rototoon.contours_layer
-    wanted = {_name(part): _points(part, points) for part, points in polygons.items()}
+    wanted = _wanted(polygons)
     found = contours.read(ob)
     known = {part.name: part for part in found.parts}
     places = {part: _place(found, known.get(part), name) for part in wanted}
@@ -55,6 +55,9 @@ def set_key(
     controls = {part: _control(known.get(part), part, points, frame, mapper) for part, points in wanted.items()}
     placed = _on_layers(ob, name, frame, wanted, places)
     made = [_new_part(ob, found, part, closed, len(wanted[part])) for part in wanted if part not in known]
+    for item in ob.rototoon.parts:
+        if item.name in wanted and not _has_strokes(known.get(item.name)):
+            item.count = len(wanted[item.name])
     for place in dict.fromkeys(places.values()):
         mine = {part: placed[part] for part in wanted if places[part] == place}
         _draw(ob, place, frame, mine, controls, radius, material)
@@ -97,10 +100,21 @@ def _frame(ob: bpy.types.Object, frame: Any) -> int:
     return whole
 
 
-def _name(part: Any) -> str:
-    if not isinstance(part, str) or not part.strip():
-        raise Problem(f"polygons: found {part!r}, expected the name of a part")
-    return part
+def _wanted(polygons: Mapping[str, Any]) -> dict[str, np.ndarray]:
+    """Points (N, 2) by the name of a part, as the list of parts has it: without spaces around it."""
+    wanted: dict[str, np.ndarray] = {}
+    for part, points in polygons.items():
+        if not isinstance(part, str) or not part.strip():
+            raise Problem(f"polygons: found {part!r}, expected the name of a part")
+        name = part.strip()
+        if name in wanted:
+            raise Problem(f'polygons: found two contours of "{name}", expected one for each part')
+        wanted[name] = _points(name, points)
+    return wanted
+
+
+def _has_strokes(part: contours.Part | None) -> bool:
+    return part is not None and bool(part.keys or part.made)
 
 
 def _points(part: str, points: Any) -> np.ndarray:
@@ -120,7 +134,7 @@ def _place(found: contours.Contours, part: contours.Part | None, name: str) -> s
 
 def _control(part: contours.Part | None, name: str, points: np.ndarray, frame: int, mapper) -> np.ndarray:
     """Control numbers of the points of a key."""
-    if part is None or not (part.keys or part.made) or len(points) == part.count:
+    if not _has_strokes(part) or len(points) == part.count:
         return correspondence.identity(len(points))
     near = min([*part.keys, *part.made], key=lambda other: (abs(other - frame), other))
     stroke = part.keys.get(near) or part.made[near]
@@ -152,7 +166,8 @@ def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, ma
     """Adds strokes, points (N, 3) by part, to the drawing on a frame, in the place of earlier strokes of their parts."""
     layer = gp.find_layer(ob, layer_name)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
-    handle, _ = gp.drawings(layer)[frame]
+    handle, kind = gp.drawings(layer)[frame]
+    generated.settle(handle, kind)
     items = {item.name: item for item in ob.rototoon.parts}
     numbers = np.array([items[name].number for name in polygons], np.int32)
     strokes = len(gp.offsets(handle)) - 1

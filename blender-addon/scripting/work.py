@@ -30,7 +30,8 @@ class Tracked:
     ends: tuple[End, ...]
     """Ends of parts with a single key."""
     warnings: tuple[str, ...]
-    """What the operator would report as a warning: parts that need a key or are most likely off, layers that were left out."""
+    """What the operator would report as a warning: parts that need a key or are most likely off, strokes that could be something else,
+    corrections that are gone, layers that were left out."""
 
     @property
     def lost(self) -> dict[str, list[int]]:
@@ -66,5 +67,6 @@ def track(ob: bpy.types.Object, method: str = "", progress: Progress | None = No
     summary, offset = run.worker.result, ob.rototoon.frame_offset
     ends = tuple(End(end.part, end.frame + offset, end.reason) for end in summary.ends)
     left = guard.left_out(tracking.contour_layers(ob), hidden=True)
-    warnings = tuple(text for text in (tracking.where_to_look(ob, run), *exchanged.told(ob), *unseen.told(ob), left) if text)
+    said = (*run.doubts, tracking.where_to_look(ob, run), *exchanged.told(ob), *unseen.told(ob), left)
+    warnings = tuple(text for text in said if text)
     return Tracked(strokes, summary.solved, summary.reused, ends, warnings)

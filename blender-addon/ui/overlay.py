@@ -15,7 +15,7 @@ import numpy as np
 
 from ..blender import camera, guard
 from ..blender import grease_pencil as gp
-from ..capture import doubt
+from ..capture import doubt, generated
 from . import doubts
 
 SURE = np.array([0.15, 0.85, 0.35, 1.0], np.float32)
@@ -68,9 +68,8 @@ def _tracked(ob, frame: int) -> Iterator[Tracked]:
             continue
         _, handle, kind = found
         starts = gp.offsets(handle)
-        made = gp.value(handle, gp.MADE, len(starts) - 1)
-        # On an artist's frame on which every stroke is marked, the marks are old: somebody has copied a generated frame.
-        if made.any() and (kind == gp.GENERATED or not made.all()):
+        made = generated.of(handle, kind)
+        if made.any():
             yield Tracked(handle, starts, made, gp.positions(handle, int(starts[-1])), camera.layer_to_world(ob, layer))
 
 

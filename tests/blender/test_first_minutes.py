@@ -129,15 +129,6 @@ def test_contours_become_parts_while_drawing(addon, fake, tmp_path):
     assert len(ob.rototoon.parts) == 2
 
 
-def test_deleted_contours_leave_the_list(addon, fake, tmp_path):
-    ob = shots.set_up(tmp_path)
-    arrivals = addon("capture.arrivals")
-    shots.draw(addon, ob, 1, [shots.square(0), shots.diamond(0)])
-    assert arrivals.look(ob) and len(ob.rototoon.parts) == 2
-    shots.layer_of(ob).frames[0].drawing.remove_strokes(indices=[0])
-    assert arrivals.look(ob) and [part.name for part in ob.rototoon.parts] == ["Part 2"]
-
-
 def test_locked_layers_are_not_marked(addon, fake, tmp_path):
     ob = shots.set_up(tmp_path)
     shots.draw(addon, ob, 1, [shots.square(0)])

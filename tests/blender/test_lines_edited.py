@@ -4,6 +4,7 @@ import bpy
 import line_shots as ls
 import numpy as np
 import pytest
+import shots
 from line_stage import film, pictures, traced  # noqa: F401 - fixtures
 from line_stage import attribute, away, handle_of, kinds, number_of, said
 
@@ -75,8 +76,18 @@ def test_strokes_around_a_part_become_its_contour(addon, traced):
     numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1)
     handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", numbers == body)
     bpy.ops.rototoon.make_part()
-    assert said(addon).text == "The strokes fit a part that has a contour already: this is its key on frame 2"
+    assert said(addon).text == 'The strokes fit "body", which has a contour already: this is its key on frame 2'
     assert len(traced.rototoon.parts) == 1 and list(kinds(addon, traced, "Contours")) == [1, 2]
+
+
+def test_a_contour_that_waits_does_not_get_the_name_of_the_new_part(addon, traced):
+    body, contour = number_of(addon, traced, 0), np.array([[10.0, 5], [30, 5], [30, 10], [10, 12]])
+    shots.draw(addon, traced, 1, [contour])
+    bpy.ops.rototoon.make_part(numbers=str(body), name=" arm ")
+    assert said(addon).text.startswith('"arm" is a new part')
+    assert [part.name for part in traced.rototoon.parts] == ["Part 1", "arm"]
+    waited, made = (part.keys[1] for part in addon("capture.contours").read(traced).parts)
+    assert len(waited.points) == 4 and len(made.points) > 4
 
 
 def test_strokes_in_any_order_that_cross_are_cut_and_joined(addon):

@@ -99,3 +99,31 @@ def test_track_pressed_between_slices(addon, fake, live, sliced, tmp_path):
     settle(live)
     found = shots.snapshot(ob)
     assert written_by_track(addon, live, ob) == found
+
+
+@pytest.mark.parametrize("steps", [0, 1, 4, 30])
+def test_an_edit_waits_while_another_scene_is_shown(addon, fake, live, sliced, tmp_path, steps):
+    """Whether it is noted, read, tracked or written when the artist goes to the other scene."""
+    ob, scene = switched_on(addon, live, tmp_path), bpy.context.scene
+    shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
+    bpy.context.view_layer.update()
+    for _ in range(steps):
+        live.step(math.inf)
+        time.sleep(0.0005)
+    bpy.context.window.scene = bpy.data.scenes.new("Other")
+    for _ in range(50):
+        assert live.step(math.inf) is not None
+        time.sleep(0.001)
+    bpy.context.window.scene = scene
+    settle(live)
+    found = shots.snapshot(ob)
+    assert addon("capture.sessions").known(ob).inputs == addon("capture.document").read(ob).document
+    assert written_by_track(addon, live, ob) == found
+
+
+def test_a_deleted_object_is_forgotten(addon, fake, live, tmp_path):
+    ob = switched_on(addon, live, tmp_path)
+    shots.move(addon, ob, 3, 2, (5.0, -3.0), which=[1])
+    live.note(ob)
+    bpy.data.objects.remove(ob)
+    assert live.step(math.inf) is None and not live._due

@@ -137,3 +137,24 @@ def test_match_strokes_stores_the_pairs(addon, opened):  # noqa: F811
     assert bpy.ops.rototoon.match_strokes() == {"FINISHED"}
     for handle, _ in gp.drawings(opened.data.layers[studio.INK]).values():
         assert (np.sort(gp.value(handle, gp.TRACK, 2)) > 0).all()
+
+
+def test_names_of_keys_are_those_of_the_list(addon, fake, tmp_path):
+    scripting, ob = addon("scripting"), shots.set_up(tmp_path)
+    assert scripting.set_key(ob, 1, {"arm ": shots.square(0)}) == ["arm"]
+    assert scripting.set_key(ob, 9, {" arm": shots.square(8)}) == []
+    before = shots.snapshot(ob)
+    with pytest.raises(RuntimeError, match='two contours of "leg"'):
+        scripting.set_key(ob, 5, {"leg": shots.square(4), " leg": shots.diamond(4)})
+    assert shots.snapshot(ob) == before
+
+
+def test_a_part_without_contours_takes_another_number_of_points(addon, fake, tmp_path):
+    scripting, ob, gp = addon("scripting"), shots.set_up(tmp_path), addon("blender.grease_pencil")
+    scripting.set_key(ob, 1, {"arm": shots.square(0)})
+    gp.remove_strokes(gp.drawings(shots.layer_of(ob))[1][0], [0])
+    assert scripting.set_key(ob, 1, {"arm": np.concatenate([shots.square(0), [[15.0, 40.0], [17.0, 35.0]]])}) == []
+    scripting.set_key(ob, 9, {"leg": shots.diamond(8)})
+    scripting.track(ob)
+    assert {part.name: sorted(part.keys) for part in addon("capture.contours").read(ob).parts} == {"arm": [1], "leg": [9]}
+    assert [part.count for part in ob.rototoon.parts] == [6, 4]

@@ -24,13 +24,15 @@ class ROTOTOON_OT_match_contours(Guarded, OnContours, bpy.types.Operator):
         guard.need_some(layers, hidden=True)
         reading = document.read(ob)
         identity.write(ob, reading.found, reading.decisions)
+        dropped = identity.drop_empty(ob, reading.found)
         ob.data.update_tag()
         decisions = reading.decisions
         for doubt in decisions.doubts:
             self.warn(doubt)
         self.warn(guard.left_out(layers, hidden=True))
         counts = (f"{counted(decisions.matched, 'stroke')} matched", counted(len(decisions.created), "new part"))
-        return "; ".join(f"{count}: {names}" if names else count for count, names in zip(counts, identity.named(decisions), strict=True))
+        named = zip(counts, identity.named(decisions), strict=True)
+        return "; ".join(f"{count}: {names}" if names else count for count, names in named) + dropped
 
 
 CLASSES = (ROTOTOON_OT_match_contours,)

@@ -8,7 +8,7 @@ from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnContours
 from ...common.wording import counted
-from .. import contours, document, identity
+from .. import contours, document, generated, identity
 
 
 class ROTOTOON_OT_new_key(Guarded, OnContours, bpy.types.Operator):
@@ -88,7 +88,8 @@ def _make_key(layer, sources: dict[int, list[contours.Stroke]], frame: int) -> i
         _own(copy, None)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
     drawings = gp.drawings(layer)
-    target = drawings[frame][0]
+    target, kind = drawings[frame]
+    generated.settle(target, kind)
     if frame in sources:
         _own(target, [stroke.index for stroke in sources[frame]])
     for number, group in others.items():
@@ -103,7 +104,7 @@ def _own(drawing, indices: list[int] | None) -> None:
     """Marks strokes (all by default) as the artist's. Of the marks of tracking only the part's number stays."""
     starts = gp.offsets(drawing)
     strokes, total = len(starts) - 1, int(starts[-1])
-    for name in (gp.MADE, gp.CENTER, gp.PIN):
+    for name in (gp.MADE, gp.BESIDE, gp.CENTER, gp.PIN):
         if not gp.has(drawing, name):
             continue
         values = gp.value(drawing, name, strokes if gp.TYPES[name][1] == "CURVE" else total)

@@ -44,7 +44,7 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
 
     def finish(self, _context, _work):
         looks = set_back.changed(self._ob)
-        strokes = yield from tracking.finishing(self._ob, self._tracking)
+        strokes = yield from tracking.finishing(self._ob, self._tracking, drop_empty=True)
         if strokes is None:
             raise Problem("The contours changed while they were tracked, so the result was dropped: press Track again")
         reset = set_back.note(self._ob, looks)
@@ -53,7 +53,7 @@ class ROTOTOON_OT_track(Long, OnContours, bpy.types.Operator):
         for text in [tracking.where_to_look(self._ob, self._tracking), *exchanged.told(self._ob), *unseen.told(self._ob)]:
             self.warn(text)
         self.warn(guard.left_out(tracking.contour_layers(self._ob), hidden=True))
-        told = tracking.told(self._tracking, strokes, bool(reset)) + self._tracking.taken
+        told = tracking.told(self._tracking, strokes, bool(reset)) + self._tracking.taken + self._tracking.dropped
         return told + tracking.of_moved_lines(self._tracking) + tracking.goes_on(self._ob, self._tracking)
 
 

@@ -7,7 +7,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard, placement, selection, stroke_lines, stroke_rows
 from ...blender import strokes as st
 from ...blender.errors import Problem
-from ...capture import document, identity
+from ...capture import contours, document, identity
 from ...common.operators import Guarded
 from .. import outline
 from .tracing_base import OnFootage
@@ -51,19 +51,22 @@ class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
             raise Problem("The selected strokes enclose nothing")
         if gap > GAP * unit:
             self.warn(f"the largest gap between two strokes is {gap:.0f} pixels: look at the contour there")
-        if self.name in {part.name for part in settings.parts}:
-            raise Problem(f'There is a part "{self.name}" already: choose another name')
-        before = {part.number for part in settings.parts}
-        _draw(ob, frame, contour)
+        name = self.name.strip()
+        if name in {part.name for part in settings.parts}:
+            raise Problem(f'There is a part "{name}" already: choose another name')
+        index = _draw(ob, frame, contour)
         reading = document.read(ob)
         identity.write(ob, reading.found, reading.decisions)
-        new = [part for part in settings.parts if part.number not in before]
-        for part in new:
-            part.name = self.name or part.name
         ob.data.update_tag()
-        if new:
-            return f'"{new[0].name}" is a new part with {len(contour)} control points'
-        return f"The strokes fit a part that has a contour already: this is its key on frame {frame}"
+        part = _part_of(reading.found, settings.contours_layer, frame, index)
+        item = next(each for each in settings.parts if each.number == part.number)
+        for doubt in reading.decisions.doubts:
+            self.warn(doubt)
+        if not any(part is each for each in reading.decisions.created):
+            unused = f'. The name "{name}" is not used' if name else ""
+            return f'The strokes fit "{item.name}", which has a contour already: this is its key on frame {frame}{unused}'
+        item.name = name or item.name
+        return f'"{item.name}" is a new part with {len(contour)} control points'
 
     def _wanted(self) -> set[int] | None:
         try:
@@ -92,8 +95,14 @@ def _strokes(ob, frame: int, wanted: set[int] | None) -> list[tuple[np.ndarray, 
     return found
 
 
-def _draw(ob, frame: int, contour: np.ndarray) -> None:
-    """Adds the contour to the layer of the contours, as if the artist had drawn it."""
+def _part_of(found: contours.Contours, layer: str, frame: int, index: int) -> contours.Part:
+    """The part of which a stroke is the key."""
+    place = found.layer_names.index(layer), index
+    return next(part for part in found.parts if frame in part.keys and (part.keys[frame].layer, part.keys[frame].index) == place)
+
+
+def _draw(ob, frame: int, contour: np.ndarray) -> int:
+    """Adds the contour to the layer of the contours, as if the artist had drawn it. Returns its index in the drawing."""
     name = ob.rototoon.contours_layer
     layer = gp.layer(ob, name)
     mapping = placement.Mapper(ob, [frame], {}, [name]).at(0, frame)
@@ -108,7 +117,9 @@ def _draw(ob, frame: int, contour: np.ndarray) -> None:
         gp.PART: np.zeros(1, np.int32),
         gp.MADE: np.zeros(1, bool),
     }
-    stroke_rows.append(gp.drawings(layer)[frame][0], rows)
+    handle = gp.drawings(layer)[frame][0]
+    stroke_rows.append(handle, rows)
+    return len(gp.offsets(handle)) - 2
 
 
 CLASSES = (ROTOTOON_OT_make_part,)
