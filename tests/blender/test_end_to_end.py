@@ -127,3 +127,15 @@ def test_snap_after_opening_the_file_again(addon, tmp_path):
     with addon("rototoon").Session.open(tmp_path / "out.json") as session:
         assert session.parts() == ["Part 1", "Part 2"]
         assert len(session.curves("Part 2", 5)) == 4
+
+
+def test_footage_that_is_drawn_again_under_the_same_names_is_read_again(addon, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    late = [number - 2 * np.sin(np.pi * number / 8) for number in range(9)]
+    for number in range(1, 8):
+        (tmp_path / "frames" / f"shot_{number + 1:03}.png").write_bytes(shots.drawn(late[number]))
+    bpy.ops.rototoon.track()
+    assert "the pictures have changed and were read again" in addon("scripting").take_reports()[-1].text
+    points = dict(shots.pixels(addon, ob, 5))[2]
+    assert np.linalg.norm(points - shots.square(late[4]), axis=1).max() < 3

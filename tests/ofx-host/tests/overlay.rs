@@ -280,6 +280,8 @@ fn buttons_make_and_delete_keys_points_and_parts() {
     assert_eq!((effect.press_at("deletePoints", 2.0).as_str(), count(&effect)), (OK, 4));
     assert_eq!(effect.press_at("deletePoints", 2.0), "kOfxStatFailed");
     effect.set_text("part", "star");
+    // Its points are selected too.
+    assert_eq!((effect.press("nextPart"), effect.press("previousPart")), (OK.into(), OK.into()));
     assert_eq!(effect.press_at("deletePart", 2.0), OK);
     assert_eq!((kept(&effect).scene.parts.len(), effect.text("part").as_str()), (2, ""));
     // The part that has its place now is not selected.

@@ -13,7 +13,7 @@ use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
 use rototoon::geometry::Point;
 use rototoon::project::Document;
-use rototoon::scene::{FrameNumber, Scene};
+use rototoon::scene::FrameNumber;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Movement of the pen in screen pixels up to which a press is a click.
@@ -152,25 +152,6 @@ pub struct Editor {
 }
 
 impl Editor {
-    /// Keeps the selection to the parts that it was made on, whatever became of the document since.
-    pub fn follow(&mut self, scene: &Scene) {
-        self.selection.keep_existing(&self.names, scene);
-        if !self.names.iter().eq(scene.parts.iter().map(|part| &part.name)) {
-            self.names = scene.parts.iter().map(|part| part.name.clone()).collect();
-        }
-    }
-
-    /// Selects points of a document's parts.
-    pub fn select(&mut self, selection: Selection, scene: &Scene) {
-        self.follow(scene);
-        self.selection = selection;
-    }
-
-    /// A part has another name, and stays selected.
-    pub fn rename(&mut self, old: &str, new: &str) {
-        self.names.iter_mut().filter(|name| *name == old).for_each(|name| new.clone_into(name));
-    }
-
     /// The contour that is being drawn on a frame.
     pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
         self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
@@ -420,27 +401,6 @@ impl Editor {
         }
     }
 
-    fn select_box(&mut self, work: &Work, corners: [Point; 2]) -> Outcome {
-        let found = Selection::of(hit::in_box(&work.document.scene, work.frame, work.parts, corners));
-        if self.shift {
-            self.selection.add(&found);
-        } else {
-            self.selection = found;
-        }
-        self.selected(work)
-    }
-
-    fn select_inside(&mut self, work: &Work, pen: Point) -> Outcome {
-        let found = hit::inside(&work.document.scene, work.frame, work.parts, pen);
-        let found = found.map(|part| Selection::part(part, &work.document.scene)).unwrap_or_default();
-        if self.shift {
-            self.selection.add(&found);
-        } else {
-            self.selection = found;
-        }
-        self.selected(work)
-    }
-
     fn apply(&self, work: &Work, transform: &Transform, label: &'static str) -> Outcome {
         let scene = &work.document.scene;
         let mut moved = BTreeMap::new();
@@ -505,5 +465,6 @@ impl Editor {
 }
 
 mod on_selection;
+mod selecting;
 #[cfg(test)]
 mod tests;
