@@ -6,11 +6,12 @@ use crate::lock::Lock;
 use crate::manifest::Shot;
 use crate::record::{Done, Record};
 use crate::step::Step;
-use crate::{digest, page};
+use crate::digest::{self, Frames};
+use crate::page;
 use rototoon::memory::Bytes;
+use rototoon::pipeline;
 use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
-use rototoon::scene::Footage;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -169,12 +170,7 @@ impl Work<'_> {
         // First of all, so that what a killed worker renamed is known as the batch's own.
         self.place()?;
         let mut document = absolute(&self.shot.project);
-        let footage = self.footage(&document)?;
-        let frames = if self.shot.steps.iter().any(Step::reads_footage) {
-            digest::of_footage(&footage, &folder_of(&document, &footage))
-        } else {
-            String::new()
-        };
+        let frames = self.frames(&document)?;
         for (index, step) in self.shot.steps.iter().enumerate() {
             if (self.worker.stop)() {
                 return Err(ShotError::Stopped);
@@ -190,14 +186,17 @@ impl Work<'_> {
         self.record.ended_bytes = 0;
         // Its memory is free from here on.
         self.program = None;
-        self.find(&document, &frames)
+        self.find(&document, &frames.hash)
     }
 
-    fn footage(&self, document: &Path) -> Result<Footage, ShotError> {
-        match Document::load(document) {
-            Ok(document) => Ok(document.scene.footage),
-            Err(error) => Err(ShotError::Step(error.lines().join("; "))),
-        }
+    /// The frames of the shot's project.
+    fn frames(&self, project: &Path) -> Result<Frames, ShotError> {
+        let mut document = Document::load(project).map_err(|error| ShotError::Step(error.lines().join("; ")))?;
+        let home = folder_of(project, &document.scene.footage);
+        let is_read = self.shot.steps.iter().any(Step::reads_footage);
+        let hash = if is_read { digest::of_footage(&document.scene.footage, &home) } else { String::new() };
+        pipeline::relocate(&mut document, &home, &self.folder);
+        Ok(Frames { hash, pattern: document.scene.footage.pattern })
     }
 
     /// Reads what the newest document says, and draws its contact sheet.
