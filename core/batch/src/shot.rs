@@ -1,5 +1,7 @@
 //! All steps of a shot, in its folder.
 
+mod files;
+
 use crate::child::{Ended, Program};
 use crate::findings::Findings;
 use crate::lock::Lock;
@@ -167,7 +169,7 @@ pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<R
 
 impl Work<'_> {
     fn steps(&mut self) -> Result<(), ShotError> {
-        // First of all, so that what a killed worker renamed is known as the batch's own.
+        // First of all, so that what a killed worker renamed is known as the batch's own. What cannot get its name may not be wanted any more.
         self.place()?;
         let mut document = absolute(&self.shot.project);
         let frames = self.frames(&document)?;
@@ -182,6 +184,7 @@ impl Work<'_> {
                 document = self.folder.join(output);
             }
         }
+        self.give_up_pending()?;
         self.forget()?;
         self.record.ended_bytes = 0;
         // Its memory is free from here on.
@@ -219,6 +222,10 @@ impl Work<'_> {
             self.tell(step, StepOutcome::Unchanged, None);
             return Ok(());
         }
+        if let Some(path) = self.kept_out(reads) {
+            return Err(ShotError::Foreign(path));
+        }
+        self.give_up_pending()?;
         self.clear()?;
         let ended = self.start(index, step, document)?;
         if ended.stopped || (ended.interrupted && self.is_stopped_soon()) {
@@ -255,31 +262,6 @@ impl Work<'_> {
         let Some(at) = self.record.steps.iter().skip(index).position(|done| is_done(&done)) else { return false };
         self.record.steps[index..=index + at].rotate_right(1);
         true
-    }
-
-    /// Whether a file of the folder has a hash.
-    fn has(&self, name: &str, hash: &str) -> bool {
-        digest::of_file(&self.folder.join(name)).is_ok_and(|found| found == hash)
-    }
-
-    /// Removes what a step left that did not come to its end.
-    fn clear(&self) -> Result<(), ShotError> {
-        for name in self.new_files()? {
-            let path = self.folder.join(&name);
-            fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
-        }
-        Ok(())
-    }
-
-    /// Files with their first names, sorted.
-    fn new_files(&self) -> Result<Vec<String>, ShotError> {
-        let failed = |source| ShotError::File { path: self.folder.clone(), source };
-        let mut names = Vec::new();
-        for entry in fs::read_dir(&self.folder).map_err(failed)? {
-            names.extend(entry.map_err(failed)?.file_name().into_string().ok().filter(|name| name.starts_with(NEW)));
-        }
-        names.sort();
-        Ok(names)
     }
 
     fn start(&mut self, index: usize, step: &Step, document: &Path) -> Result<Ended, ShotError> {
@@ -328,7 +310,9 @@ impl Work<'_> {
         self.did.push(step.name());
         let before = self.enter(index, done);
         self.record.write(&self.folder)?;
-        self.place()?;
+        if let Some(path) = self.place()? {
+            return Err(ShotError::Foreign(path));
+        }
         self.remove_old(&before)
     }
 
@@ -353,46 +337,6 @@ impl Work<'_> {
         let renamed = old.into_iter().filter(|old| self.did.contains(&old.step.as_str()));
         let names: Vec<String> = renamed.flat_map(|old| old.outputs).collect();
         if names.is_empty() { Ok(()) } else { self.remove_old(&names) }
-    }
-
-    /// Gives pending files their names. A file that is there must be one of the batch.
-    fn place(&mut self) -> Result<(), ShotError> {
-        if self.record.pending.is_empty() {
-            return Ok(());
-        }
-        for (name, hash) in self.record.pending.clone() {
-            let (from, to) = (self.folder.join(format!("{NEW}{name}")), self.folder.join(&name));
-            let found = digest::of_file(&to).ok();
-            let own =
-                found.is_none() || found.as_ref() == Some(&hash) || found.as_ref() == self.record.files.get(&name);
-            if !own || (found.is_none() && fs::symlink_metadata(&to).is_ok()) {
-                return Err(ShotError::Foreign(to));
-            }
-            if self.has(&format!("{NEW}{name}"), &hash) {
-                fs::rename(&from, &to).map_err(|source| ShotError::File { path: to, source })?;
-            } else if found.as_ref() != Some(&hash) {
-                // It is gone; what is there now keeps its own hash.
-                continue;
-            }
-            self.record.files.insert(name, hash);
-        }
-        self.record.pending.clear();
-        Ok(self.record.write(&self.folder)?)
-    }
-
-    /// Removes files of an earlier run that no step writes any more, if nobody changed them.
-    fn remove_old(&mut self, names: &[String]) -> Result<(), ShotError> {
-        for name in names {
-            if self.record.steps.iter().any(|done| done.outputs.contains(name)) {
-                continue;
-            }
-            let Some(hash) = self.record.files.remove(name) else { continue };
-            if self.has(name, &hash) {
-                let path = self.folder.join(name);
-                fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
-            }
-        }
-        Ok(self.record.write(&self.folder)?)
     }
 
     fn tell(&self, step: &Step, outcome: StepOutcome, ended: Option<&Ended>) {
