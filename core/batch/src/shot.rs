@@ -138,8 +138,8 @@ struct Work<'a> {
     record: Record,
     /// Takes the steps; started for the first one that is not done.
     program: Option<Program>,
-    /// Names of the steps that this run did.
-    did: Vec<&'static str>,
+    /// Names of the steps that this run did for the first time.
+    fresh: Vec<&'static str>,
 }
 
 /// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
@@ -150,7 +150,7 @@ struct Work<'a> {
 /// The record cannot be read or written; the batch was stopped.
 pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
     let (record, aside) = Record::read(folder)?;
-    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, did: Vec::new() };
+    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, fresh: Vec::new() };
     let result = work.steps();
     work.program = None;
     work.record.failure = match result {
@@ -307,17 +307,19 @@ impl Work<'_> {
             kept_bytes: ended.kept_bytes,
             messages: ended.messages.clone(),
         };
-        self.did.push(step.name());
         let before = self.enter(index, done);
+        if before.is_none() {
+            self.fresh.push(step.name());
+        }
         self.record.write(&self.folder)?;
         if let Some(path) = self.place()? {
             return Err(ShotError::Foreign(path));
         }
-        self.remove_old(&before)
+        self.remove_old(&before.unwrap_or_default())
     }
 
-    /// Puts a step into its place in the record. Returns the files of the earlier run of this step.
-    fn enter(&mut self, index: usize, done: Done) -> Vec<String> {
+    /// Puts a step into its place in the record. Returns the files of the earlier run of this step, if there was one.
+    fn enter(&mut self, index: usize, done: Done) -> Option<Vec<String>> {
         // Later steps stay: if they read what has changed, their hashes say so. Files tell which one is the same step.
         let same = |old: &Done| {
             if done.outputs.is_empty() {
@@ -328,14 +330,18 @@ impl Work<'_> {
         };
         let before = self.record.steps.iter().skip(index).position(same).map(|at| self.record.steps.remove(index + at));
         self.record.steps.insert(index, done);
-        before.map(|old| old.outputs).unwrap_or_default()
+        before.map(|old| old.outputs)
     }
 
-    /// Forgets the steps that the manifest no longer has. Their files stay, but not those of a step that now writes others.
+    /// Forgets the steps that the manifest no longer has. Their files stay, but not those of a step that now writes others: for each that is
+    /// forgotten there is a new one with the same subcommand.
     fn forget(&mut self) -> Result<(), ShotError> {
         let old = self.record.steps.split_off(self.shot.steps.len().min(self.record.steps.len()));
-        let renamed = old.into_iter().filter(|old| self.did.contains(&old.step.as_str()));
-        let names: Vec<String> = renamed.flat_map(|old| old.outputs).collect();
+        let is_renamed = |own: &&Done| {
+            let forgotten = old.iter().filter(|old| old.step == own.step).count();
+            forgotten <= self.fresh.iter().filter(|name| **name == own.step).count()
+        };
+        let names: Vec<String> = old.iter().filter(is_renamed).flat_map(|old| old.outputs.clone()).collect();
         if names.is_empty() { Ok(()) } else { self.remove_old(&names) }
     }
 

@@ -153,6 +153,26 @@ fn steps_may_be_inserted_moved_and_taken_out() {
 }
 
 #[test]
+fn files_of_a_step_that_is_taken_out_stay_where_others_of_its_kind_are_done() {
+    let season = Season::new(1);
+    let render = |what: &str, to: &str| json!({"do": "render", "what": what, "to": to});
+    let (track, matte, ids) = (json!({"do": "track"}), render("matte", "a_%03d.png"), render("ids", "b_%03d.exr"));
+    let run = |steps: &Value| {
+        season.manifest(steps, 1);
+        season.good(&[]);
+        season.results().into_keys().filter(|name| name.contains("_002")).collect::<Vec<_>>()
+    };
+    assert_eq!(run(&json!([track, matte, ids])), ["sh0/a_002.png", "sh0/b_002.exr"]);
+    draw(&season.path("in/sh0/f_002.png"), 11);
+    assert_eq!(run(&json!([track, ids])), ["sh0/a_002.png", "sh0/b_002.exr"], "the ids are done again");
+    // One new step for two old ones: nothing says which of them has another name now.
+    assert_eq!(run(&json!([track, matte, ids])).len(), 2);
+    assert_eq!(run(&json!([track, render("matte", "c_%03d.png")])), ["sh0/a_002.png", "sh0/b_002.exr", "sh0/c_002.png"]);
+    assert_eq!(run(&json!([track, render("matte", "d_%03d.png")])).last().unwrap(), "sh0/d_002.png");
+    assert!(!season.path("out/sh0/c_002.png").exists(), "one for one: it has another name");
+}
+
+#[test]
 fn files_of_others_are_never_replaced() {
     let season = Season::new(2);
     fs::create_dir_all(season.path("out/sh0")).unwrap();
