@@ -6,7 +6,7 @@ use crate::child::{Ended, Program};
 use crate::findings::Findings;
 use crate::lock::Lock;
 use crate::manifest::Shot;
-use crate::record::{Done, Record};
+use crate::record::{Done, Record, RecordError};
 use crate::step::Step;
 use crate::digest::{self, Frames};
 use crate::page;
@@ -110,6 +110,9 @@ pub enum ShotError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The record cannot be used.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// A file cannot be read or renamed.
     #[error("{}: {source}", path.display())]
     File {
