@@ -51,6 +51,12 @@ pub fn of_step(step: &Step, document: &str, frames: &Frames) -> String {
     of_texts(texts.chain(words.iter().map(String::as_str)))
 }
 
+/// The hash of what a manifest asks for a shot: the words of all steps.
+pub fn of_steps(steps: &[Step]) -> String {
+    let each: Vec<String> = steps.iter().map(|step| of_texts(step.words("", "").iter().map(String::as_str))).collect();
+    of_texts(each.iter().map(String::as_str))
+}
+
 /// The hash of texts in their order. Each has its length before it, so no two lists run together.
 fn of_texts<'a>(texts: impl Iterator<Item = &'a str>) -> String {
     let mut hasher = blake3::Hasher::new();

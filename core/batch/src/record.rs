@@ -36,6 +36,9 @@ pub struct Record {
     /// Why the shot failed; empty if it did not.
     #[serde(default)]
     pub failure: String,
+    /// Hash of the steps that the last run came to its end with; empty while one has begun and not ended. Records of earlier versions have none.
+    #[serde(default)]
+    pub asked: Option<String>,
     /// Hash of what the findings and the contact sheet were made of.
     #[serde(default)]
     pub seen: String,

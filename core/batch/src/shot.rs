@@ -166,6 +166,7 @@ pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<R
         work.record.failure =
             [work.record.failure, note].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ");
     }
+    work.record.asked = Some(digest::of_steps(&shot.steps));
     work.record.write(folder)?;
     Ok(work.record)
 }
@@ -228,8 +229,7 @@ impl Work<'_> {
         if let Some(path) = self.kept_out(reads) {
             return Err(ShotError::Foreign(path));
         }
-        self.give_up_pending()?;
-        self.clear()?;
+        self.begin()?;
         let ended = self.start(index, step, document)?;
         if ended.stopped || (ended.interrupted && self.is_stopped_soon()) {
             self.clear()?;
@@ -246,6 +246,17 @@ impl Work<'_> {
         self.finish(index, step, reads, &ended)?;
         self.tell(step, StepOutcome::Done, Some(&ended));
         Ok(())
+    }
+
+    /// Makes ready for a step that is not done. What the last run came to holds no longer, also if this one is stopped or killed.
+    fn begin(&mut self) -> Result<(), ShotError> {
+        self.give_up_pending()?;
+        self.clear()?;
+        if self.record.asked.as_deref() == Some("") && self.record.failure.is_empty() {
+            return Ok(());
+        }
+        (self.record.asked, self.record.failure) = (Some(String::new()), String::new());
+        Ok(self.record.write(&self.folder)?)
     }
 
     /// Whether the batch is asked to end now or in a moment. A signal to a group of processes, such as Ctrl-C, may reach the program of the steps first.
@@ -403,6 +414,7 @@ fn absolute(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
     fn messages_have_the_final_names_of_files() {
@@ -415,18 +427,22 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_step_that_the_system_ends_leaves_its_last_words_and_what_it_held() {
-        let folder = tempfile::tempdir().unwrap();
-        let project = folder.path().join("project.json");
-        // The program is asked for `steps` in this folder: a shell takes that as its script.
-        let script = "read a; echo 'memory allocation of 7 bytes failed' >&2; echo 'note: here' >&2
-            echo 'stack backtrace:' >&2; echo '   0: main' >&2; sleep 0.5; kill -9 $$";
-        fs::write(folder.path().join("steps"), script).unwrap();
+    /// A shot in a folder, with one step, which a shell takes as this script: the program is asked for `steps` there.
+    fn shot(folder: &Path, script: &str) -> Shot {
+        let project = folder.join("project.json");
+        fs::write(folder.join("steps"), script).unwrap();
         let footage = json!({"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 64, "height": 48});
         fs::write(&project, json!({"rototoon": 1, "footage": footage, "parts": []}).to_string()).unwrap();
         let steps = vec![Step::read(&json!({"do": "check"})).unwrap()];
-        let shot = Shot { name: "a".into(), project, blend: None, steps };
+        Shot { name: "a".into(), project, blend: None, steps }
+    }
+
+    #[test]
+    fn a_step_that_the_system_ends_leaves_its_last_words_and_what_it_held() {
+        let folder = tempfile::tempdir().unwrap();
+        let script = "read a; echo 'memory allocation of 7 bytes failed' >&2; echo 'note: here' >&2
+            echo 'stack backtrace:' >&2; echo '   0: main' >&2; sleep 0.5; kill -9 $$";
+        let shot = shot(folder.path(), script);
         let (lock, told) = (Lock::take(folder.path()).unwrap().unwrap(), |_: &Shot, _: &News| {});
         let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &|| false, told: &told };
         let record = run(&shot, folder.path(), &lock, &worker).unwrap();
@@ -437,5 +453,22 @@ mod tests {
             assert!(record.ended_bytes > 0 && failure.contains(" while it held "), "{failure}");
         }
         assert_eq!(Record::read(folder.path()).unwrap().0.peak_bytes(), record.ended_bytes);
+    }
+
+    #[test]
+    fn a_run_that_is_stopped_leaves_no_failure_of_an_earlier_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let shot = shot(folder.path(), "read a; exec sleep 60");
+        let asked = Some(digest::of_steps(&shot.steps));
+        let old = Record { rototoon_record: 1, failure: "old".into(), asked, ..Record::default() };
+        old.write(folder.path()).unwrap();
+        let began = AtomicBool::new(false);
+        let told = |_: &Shot, _: &News| began.store(true, Ordering::Relaxed);
+        let stop = || began.load(Ordering::Relaxed);
+        let lock = Lock::take(folder.path()).unwrap().unwrap();
+        let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &stop, told: &told };
+        assert!(matches!(run(&shot, folder.path(), &lock, &worker), Err(ShotError::Stopped)));
+        let (record, _) = Record::read(folder.path()).unwrap();
+        assert_eq!((record.failure.as_str(), record.asked.as_deref()), ("", Some("")));
     }
 }

@@ -91,6 +91,39 @@ fn a_folder_of_results_that_is_gone_or_no_folder_concerns_its_shot_alone() {
     assert!(cfg!(windows) || found["failure"].as_str().unwrap().contains("sh1"), "{found}");
 }
 
+fn outcome(season: &Season) -> Value {
+    season.run(&["--summary"]);
+    summary(season)["shots"][0]["outcome"].clone()
+}
+
+#[test]
+fn a_summary_counts_only_what_was_run_with_the_manifest() {
+    let season = Season::new(1);
+    season.good(&[]);
+    assert_eq!(outcome(&season), "good");
+    // As many steps, and another one among them.
+    let mut other = steps();
+    other[4]["to"] = json!("shapes.nk");
+    season.manifest(&other, 1);
+    assert_eq!(outcome(&season), "not_run");
+    season.good(&[]);
+    assert_eq!(outcome(&season), "good");
+    // A failure of other steps.
+    fs::write(season.path("out/sh0/mine.svg"), "mine").unwrap();
+    other[4]["to"] = json!("mine.svg");
+    season.manifest(&other, 1);
+    season.run(&[]);
+    assert_eq!(outcome(&season), "failed");
+    season.manifest(&steps(), 1);
+    assert_eq!(outcome(&season), "not_run");
+    // A record of an earlier version does not say what was asked.
+    season.good(&[]);
+    let mut record = season.record("sh0");
+    record.as_object_mut().unwrap().remove("asked");
+    fs::write(season.path("out/sh0/batch.json"), record.to_string()).unwrap();
+    assert_eq!(outcome(&season), "good");
+}
+
 /// A season of one shot, in which a file of somebody else has the name of an export.
 fn with_a_file_of_others() -> Season {
     let season = Season::new(1);
