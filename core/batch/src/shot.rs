@@ -3,13 +3,13 @@
 mod files;
 
 use crate::child::{Ended, Program};
+use crate::digest::{self, Frames};
 use crate::findings::Findings;
 use crate::lock::Lock;
 use crate::manifest::Shot;
+use crate::page;
 use crate::record::{Done, Record, RecordError};
 use crate::step::Step;
-use crate::digest::{self, Frames};
-use crate::page;
 use rototoon::memory::Bytes;
 use rototoon::pipeline;
 use rototoon::project::place::folder_of;

@@ -167,7 +167,10 @@ fn files_of_a_step_that_is_taken_out_stay_where_others_of_its_kind_are_done() {
     assert_eq!(run(&json!([track, ids])), ["sh0/a_002.png", "sh0/b_002.exr"], "the ids are done again");
     // One new step for two old ones: nothing says which of them has another name now.
     assert_eq!(run(&json!([track, matte, ids])).len(), 2);
-    assert_eq!(run(&json!([track, render("matte", "c_%03d.png")])), ["sh0/a_002.png", "sh0/b_002.exr", "sh0/c_002.png"]);
+    assert_eq!(
+        run(&json!([track, render("matte", "c_%03d.png")])),
+        ["sh0/a_002.png", "sh0/b_002.exr", "sh0/c_002.png"]
+    );
     assert_eq!(run(&json!([track, render("matte", "d_%03d.png")])).last().unwrap(), "sh0/d_002.png");
     assert!(!season.path("out/sh0/c_002.png").exists(), "one for one: it has another name");
 }
