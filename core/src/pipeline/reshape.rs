@@ -12,6 +12,7 @@
 //! - `depths`: what is in front of what on each frame
 //! - `store`: the result in the document
 //! - `kept`: what the artist corrected on an earlier result
+//! - `own`: what the drawing's own motion has and a result has not
 //! - `sunk`: parts that go through the ground
 //! - `hover`: feet that never reach it
 //! - `told`: what is said about the result
@@ -26,6 +27,7 @@ mod lines;
 mod loose;
 mod motion;
 mod moves;
+mod own;
 mod rate;
 mod store;
 mod sunk;
@@ -41,6 +43,7 @@ use crate::scene::limbs::{Binding, LimbSet};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
 use bodies::{Body, Moved};
 use kept::Corrections;
+use own::OwnMotion;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -134,6 +137,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let set = document.limbs().map_err(wrong)?;
     let rest = rest_frame(&document.scene.parts, job.rest)?;
     let strokes = strokes_at(document, rest)?;
+    let own = OwnMotion::of(document, &set, rest)?;
     let mut corrections = Corrections::of(document, rest)?;
     let outdated = corrections.outdated(document, rest);
     let footage = footage(&document.scene.footage, job);
@@ -155,15 +159,24 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
     let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
     let mut report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
-    let placed = rebound(&set, &bindings, parts, rest);
+    let mut placed = rebound(&set, &bindings, parts, rest);
     let loose: Vec<_> =
         loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
+    own.forget(document);
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
-    document.set_limbs(&placed);
     correct(document, &mut corrections, &mut report);
+    let footage = &document.scene.footage;
+    // All frames show the drawing at rest, and with it its side.
+    placed.swaps = if set.swapped(rest) { vec![(footage.first, footage.last)] } else { Vec::new() };
+    if let (true, Some(blank)) = (strokes.is_empty(), own.blank(footage)) {
+        document.set_in_betweens(Vec::new(), &blank);
+        report.notes.extend(own.unseen(rest));
+    }
+    document.set_limbs(&placed);
     let same = job.clip.template.same_points(&set.template) && job.chains.is_empty();
     report.notes.extend(outdated);
     report.notes.extend(guesses::followed(job.clip, (&set, &document.scene.parts), report.mirrored, same));
+    report.remarks.extend(own.said());
     report.remarks.extend(depths.said);
     Ok(report)
 }
@@ -226,10 +239,15 @@ fn rest_frame(parts: &[Part], asked: Option<FrameNumber>) -> Result<FrameNumber,
     })
 }
 
-/// The strokes of the drawing on the frame at rest.
+/// The strokes of the drawing on the frame at rest. Between key drawings they are those of its in-between that are more seen than not.
 fn strokes_at(document: &Document, rest: FrameNumber) -> Result<Vec<DrawnStroke>, PipelineError> {
     let read = document.drawings().map_err(wrong)?;
-    Ok(read.drawings.into_iter().find(|drawing| drawing.frame == rest).map_or_else(Vec::new, |d| d.strokes))
+    if let Some(drawing) = read.drawings.into_iter().find(|drawing| drawing.frame == rest) {
+        return Ok(drawing.strokes);
+    }
+    let between = document.in_betweens().map_err(wrong)?.into_iter().filter(|between| between.frame == rest);
+    let seen = between.flat_map(|between| between.strokes).filter(|(_, opacity, _)| *opacity >= 0.5);
+    Ok(seen.map(|(_, _, stroke)| stroke).collect())
 }
 
 fn footage(own: &Footage, job: &ReshapeJob) -> Footage {
@@ -265,6 +283,8 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
 mod animals;
 #[cfg(test)]
 mod scenery;
+#[cfg(test)]
+mod shots;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
