@@ -3,6 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::unchanged;
 use rototoon::pipeline;
+use rototoon::project::output::check_writable;
 use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::{Document, Inputs, is_same_file};
 use std::path::{Path, PathBuf};
