@@ -397,7 +397,8 @@ mod tests {
         let pair = Pair { from: 1, to: 2, reversed: false, start: 0.0, confidence: 1.0, by_hand: true };
         let first = Matching { pairs: vec![pair], ..matchings[0].clone() };
         let matchings = [&[first], &matchings[1..]].concat();
-        let sequence = Sequence::new(keys, &matchings, &GivenPegs::default(), &Options::default()).unwrap();
+        let mut sequence = Sequence::new(keys, &matchings, &GivenPegs::default(), &Options::default()).unwrap();
+        sequence.ways[2] = Way::Held;
         let ways = |sequence: &Sequence| {
             let flows = |way: &Way| if matches!(way, Way::Flows(..)) { "flows" } else { "matched" };
             sequence.ways.iter().map(|way| if *way == Way::Held { "held" } else { flows(way) }).collect::<Vec<_>>()
