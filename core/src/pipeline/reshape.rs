@@ -43,6 +43,7 @@ use crate::scene::limbs::{Binding, LimbSet};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
 use bodies::{Body, Moved};
 use kept::Corrections;
+use motion::Motion;
 use own::OwnMotion;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
@@ -147,17 +148,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let (mut bodies, loose) = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
     let depths = depths::of(&set, parts, &bodies, footage.first..=footage.last)?;
-    progress.report(STEP, 0.05)?;
-    let done = AtomicUsize::new(0);
-    let moved = bodies.par_iter().map(|body| {
-        let moved = body.moved(&motion, parts, &job.options)?;
-        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress.report(STEP, 0.05 + 0.95 * finished as f64 / bodies.len() as f64)?;
-        Ok(moved)
-    });
-    // Of several errors the first part's is told, whichever was met first.
-    let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
-    let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let moved = all_moved(&bodies, &motion, parts, &job.options, progress)?;
     let mut report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
     let mut placed = rebound(&set, &bindings, parts, rest);
     let loose: Vec<_> =
@@ -165,20 +156,40 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     own.forget(document);
     store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
     correct(document, &mut corrections, &mut report);
-    let footage = &document.scene.footage;
     // All frames show the drawing at rest, and with it its side.
-    placed.swaps = if set.swapped(rest) { vec![(footage.first, footage.last)] } else { Vec::new() };
-    if let (true, Some(blank)) = (strokes.is_empty(), own.blank(footage)) {
-        document.set_in_betweens(Vec::new(), &blank);
-        report.notes.extend(own.unseen(rest));
-    }
+    let frames = (document.scene.footage.first, document.scene.footage.last);
+    placed.swaps = if set.swapped(rest) { vec![frames] } else { Vec::new() };
     document.set_limbs(&placed);
+    if strokes.is_empty() {
+        report.notes.extend(own.show_no_strokes(document, rest));
+    }
     let same = job.clip.template.same_points(&set.template) && job.chains.is_empty();
     report.notes.extend(outdated);
     report.notes.extend(guesses::followed(job.clip, (&set, &document.scene.parts), report.mirrored, same));
     report.remarks.extend(own.said());
     report.remarks.extend(depths.said);
     Ok(report)
+}
+
+/// All bodies on every frame of the clip.
+fn all_moved(
+    bodies: &[Body],
+    motion: &Motion,
+    parts: &[Part],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Vec<Moved>, PipelineError> {
+    progress.report(STEP, 0.05)?;
+    let done = AtomicUsize::new(0);
+    let moved = bodies.par_iter().map(|body| {
+        let moved = body.moved(motion, parts, options)?;
+        let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress.report(STEP, 0.05 + 0.95 * finished as f64 / bodies.len() as f64)?;
+        Ok(moved)
+    });
+    // Of several errors the first part's is told, whichever was met first.
+    let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
+    moved.into_iter().collect()
 }
 
 /// Notes which keys were made, and puts the artist's corrections of an earlier result into the new one.

@@ -10,14 +10,14 @@ use super::{PipelineError, wrong};
 use crate::pipeline::report::{ranges, runs};
 use crate::project::Document;
 use crate::project::drawings::DrawnBetween;
+use crate::scene::FrameNumber;
 use crate::scene::limbs::LimbSet;
-use crate::scene::{Footage, FrameNumber};
 
 /// The frames of what a result does not have.
 pub(super) struct OwnMotion {
     traced: Vec<FrameNumber>,
     painted: Vec<FrameNumber>,
-    /// In-betweens that tweening drew. Those of an earlier result are on the frame at rest, too.
+    /// In-betweens that tweening drew. Those of an earlier result are on the frame at rest, too, and have no matches.
     tweened: Vec<FrameNumber>,
     /// Whether the document has in-betweens.
     between: bool,
@@ -32,7 +32,8 @@ impl OwnMotion {
         let traced = document.traced().map_err(wrong)?.into_iter().filter(|own| !own.strokes.is_empty());
         let filled = document.filled().map_err(wrong)?.into_iter().filter(|own| !own.regions.is_empty());
         let between = document.in_betweens().map_err(wrong)?;
-        let made = between.iter().any(|own| own.frame == rest);
+        let matched = !document.stroke_numbers().map_err(wrong)?.is_empty();
+        let made = !matched && between.iter().any(|own| own.frame == rest);
         let tweened = between.iter().filter(|own| !made && !own.strokes.is_empty());
         let drawn = document.drawings().map_err(wrong)?.drawings.into_iter().filter(|own| !own.strokes.is_empty());
         let footage = &document.scene.footage;
@@ -59,15 +60,16 @@ impl OwnMotion {
         document.forget_seen();
     }
 
-    /// For a drawing without strokes at rest: in-betweens that show none, so that key drawings of the own motion do not show between the
-    /// contours of the result. `None` if there are none.
-    pub fn blank(&self, footage: &Footage) -> Option<Vec<DrawnBetween>> {
+    /// Lets no frame of a result show strokes, where the drawing has none at rest: key drawings of the own motion would show between the contours
+    /// of the result. Returns what is said of them.
+    pub fn show_no_strokes(&self, document: &mut Document, rest: FrameNumber) -> Option<String> {
+        if !self.between && self.drawn.is_empty() {
+            return None;
+        }
+        let footage = &document.scene.footage;
         let blank = |frame| DrawnBetween { frame, strokes: Vec::new() };
-        (self.between || !self.drawn.is_empty()).then(|| (footage.first..=footage.last).map(blank).collect())
-    }
-
-    /// What is said of key drawings that no frame of the result shows, as the drawing has no strokes on its frame at rest.
-    pub fn unseen(&self, rest: FrameNumber) -> Option<String> {
+        let blank: Vec<DrawnBetween> = (footage.first..=footage.last).map(blank).collect();
+        document.set_in_betweens(Vec::new(), &blank);
         let drawn = runs(&self.drawn);
         (!self.drawn.is_empty()).then(|| {
             format!("frame {rest}, at rest, has no strokes, so the result shows none: the drawings on {drawn} stay in the document")
