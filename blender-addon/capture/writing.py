@@ -168,11 +168,18 @@ def laying_out(
 def limit(block: Block, ob, layer: int, found: Contours) -> None:
     """Tells the block of a layer where its strokes end: with the footage, and where parts are hidden."""
     settings = ob.rototoon
-    own = {part.number for part in found.parts if part.layer == layer}
-    times = [time for item in settings.parts if item.number in own for time in absence.of(item)]
     first, block.last = settings.first + settings.frame_offset, settings.last + settings.frame_offset
-    spans = [(low + settings.frame_offset, high + settings.frame_offset) for low, high in times]
-    hidden = (range(max(low, first), min(high, block.last) + 1) for low, high in spans)
+    hide(block, ob, layer, found, (first, block.last))
+
+
+def hide(block: Block, ob, layer: int, found: Contours, within: tuple[int, int] | None = None) -> None:
+    """Tells the block of a layer where parts are hidden, from a first to a last scene frame. Without them, on the block's own frames."""
+    if within is None:
+        within = (int(block.frames[0]), int(block.frames[-1])) if len(block.frames) else (0, -1)
+    (first, last), offset = within, ob.rototoon.frame_offset
+    own = {part.number for part in found.parts if part.layer == layer}
+    times = [time for item in ob.rototoon.parts if item.number in own for time in absence.of(item)]
+    hidden = (range(max(low + offset, first), min(high + offset, last) + 1) for low, high in times)
     block.hidden = frozenset(frame for span in hidden for frame in span)
 
 

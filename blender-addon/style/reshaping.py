@@ -6,6 +6,8 @@ keep the radius, colours, material and fill of the drawing.
 A contour that the artist corrected on a generated frame stays as it is there, as with Track. All its points become pins, since the rest of
 another clip's contour would not fit those that were moved. Release Pins lets it follow again. One on a frame that the clip does not reach
 stays too. Those that only were tracked go.
+
+Where the artist marked a part as hidden, the motion has no contour of it. The mark stays, and is named.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from rototoon import documents
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement
 from ..blender.errors import Problem
-from ..capture import corrections, document, identity, writing
+from ..capture import absence, corrections, document, identity, writing
 from . import limbs
 
 
@@ -53,16 +55,28 @@ def begin(ob, frame: int) -> Drawing:
     project = copy.deepcopy(reading.document)
     for part in project["parts"]:
         part["keys"] = {str(rest - offset): part["keys"][str(rest - offset)]}
-        for name in ("pins", "centers", "tracks", "confidence", "curves", "wants_key"):
+        # Where parts are hidden is seen to when the frames are written.
+        for name in ("pins", "centers", "tracks", "confidence", "curves", "wants_key", "absent"):
             part.pop(name, None)
     # The drawing's key is the artist's, whatever an imported document says.
     project.pop("reshaped", None)
     return Drawing(ob.session_uid, reading.document, project, rest)
 
 
-def finish(ob, drawing: Drawing, made) -> tuple[int, dict[str, list[int]]]:
-    """Writes the result, on hidden layers too, not on locked ones. Returns the number of frames, and by part those on which the artist's
-    corrections stay."""
+@dataclass
+class Written:
+    """What was written."""
+
+    frames: int
+    """The number of frames."""
+    kept: dict[str, list[int]]
+    """By part the frames on which the artist's corrections stay."""
+    hidden: dict[str, list[int]]
+    """By part the frames of the motion on which it is marked as hidden."""
+
+
+def finish(ob, drawing: Drawing, made) -> Written:
+    """Writes the result, on hidden layers too, not on locked ones."""
     guard.need(ob)
     reading = document.read(ob)
     if reading.document != drawing.inputs:
@@ -70,6 +84,7 @@ def finish(ob, drawing: Drawing, made) -> tuple[int, dict[str, list[int]]]:
     identity.write(ob, reading.found, reading.decisions)
     reading = document.read(ob)
     tracks, frames = _tracks(reading, drawing, made.document)
+    hidden = _without_hidden(tracks, ob)
     names, kept = reading.found.layer_names, _kept(reading, drawing.frame)
     if not reading.mapper.still:
         points = {index: _drawn(reading, index) for index in range(len(names))}
@@ -85,12 +100,29 @@ def finish(ob, drawing: Drawing, made) -> tuple[int, dict[str, list[int]]]:
         if index in reading.found.closed:
             continue
         block = writing.lay_out(index, parts, tracks, reading.found, reading.mapper, kept)
-        block.order = _order(block, index, parts, tracks, made.document)
+        block.order = _order(block, index, parts, tracks, (made.document, drawing.frame + 1))
+        writing.hide(block, ob, index, reading.found)
         layer = gp.find_layer(ob, name)
         writing.write(layer, block, list(gp.drawings(layer)))
     ob.data.update_tag()
     names_of = {part.number: part.name for part in reading.found.parts}
-    return len(frames), {names_of[number]: sorted(each.pins) for number, each in kept.items() if each.pins}
+    stay = {names_of[number]: sorted(each.pins) for number, each in kept.items() if each.pins}
+    return Written(len(frames), stay, {names_of[number]: on for number, on in hidden.items()})
+
+
+def _without_hidden(tracks: dict[int, writing.Track], ob) -> dict[int, list[int]]:
+    """Takes the frames out of tracks on which their part is marked as hidden. Returns these frames by part."""
+    found, offset = {}, ob.rototoon.frame_offset
+    for item in ob.rototoon.parts:
+        track = tracks.get(item.number)
+        if track is None:
+            continue
+        there = np.array([not absence.is_hidden(item, int(frame) - offset) for frame in track.frames])
+        if there.all():
+            continue
+        found[item.number] = track.frames[~there].tolist()
+        tracks[item.number] = writing.Track(track.frames[there], track.points[there], track.confidence[there])
+    return found
 
 
 def _kept(reading: document.Reading, rest: int) -> dict[int, corrections.Corrections]:
@@ -123,17 +155,20 @@ def _hold(tracks: dict[int, writing.Track], kept: dict[int, corrections.Correcti
         tracks[number] = writing.Track(frames[order], points[order], sure[order])
 
 
-def _order(block: writing.Block, layer: int, parts, tracks, project: dict[str, Any]) -> np.ndarray:
-    """The block's parts from back to front on each frame."""
+def _order(block: writing.Block, layer: int, parts, tracks, result: tuple[dict[str, Any], int]) -> np.ndarray:
+    """The block's parts from back to front on each frame. `result` is the document that was made, and the scene frame of its first picture."""
+    project, begin = result
     columns = sorted((p for p in parts if p.number in tracks and p.layer == layer), key=lambda p: p.depth)
-    first = project["footage"]["first"]
+    shift = begin - project["footage"]["first"]
+    rows = {int(frame): row for row, frame in enumerate(block.frames)}
     entries = {part["name"]: part for part in project["parts"]}
     depths = np.empty((len(block.frames), len(columns)))
     for column, part in enumerate(columns):
         entry = entries[part.name]
         depths[:, column] = entry.get("depth", 0.0)
         for frame, depth in documents.by_frame(entry.get("depths")).items():
-            depths[frame - first, column] = depth
+            if frame + shift in rows:
+                depths[rows[frame + shift], column] = depth
     return np.argsort(depths, axis=1, kind="stable")
 
 

@@ -290,6 +290,29 @@ def test_reshaping_again_leaves_corrected_contours(addon, tmp_path):
     assert "corrections" not in scripting.take_reports()[-1].text
 
 
+def test_a_hidden_part_has_no_contour_in_a_motion(addon, tmp_path):
+    shelf, scripting = str(tmp_path / "clips"), addon("scripting")
+    performer(addon, tmp_path)
+    bpy.ops.rototoon.save_clip(character="plain", motion="walk", folder=shelf)
+    ob = second_drawing(addon, tmp_path, shelf)
+    bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk")
+    frames = sorted(addon("capture.contours").read(ob).part(3).made)
+    hidden = frames[2:4]
+    for frame in hidden:
+        bpy.context.scene.frame_set(frame)
+        ob.rototoon.active_part = 2
+        assert bpy.ops.rototoon.hide_part() == {"FINISHED"}
+    bpy.context.scene.frame_set(1)
+    scripting.take_reports()
+    assert bpy.ops.rototoon.reshape_drawing(character="plain", motion="walk") == {"FINISHED"}
+    found = addon("capture.contours").read(ob)
+    assert sorted(found.part(3).made) == [frame for frame in frames if frame not in hidden]
+    assert sorted(found.part(2).made) == frames
+    report = scripting.take_reports()[-1]
+    assert report.kind == "WARNING" and f'no contour: "Part 3" on {hidden[0]} and {hidden[1]}; Part Is Hidden' in report.text, report
+    assert "own motion" not in report.text
+
+
 def test_a_clip_that_is_not_there_is_named_with_those_that_are(addon, tmp_path):
     shelf = str(tmp_path / "clips")
     performer(addon, tmp_path)

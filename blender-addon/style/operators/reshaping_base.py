@@ -64,9 +64,10 @@ class Reshaping(OnContours, Long):
         """Writes the frames."""
         layers = tracking.contour_layers(self._ob)
         guard.need_some(layers, hidden=True)
-        frames, kept = reshaping.finish(self._ob, self._drawing, work.result)
-        said = ", ".join(f'"{part}" on {listed(on)}' for part, on in kept.items())
-        self.warn(f"your corrections stay: {said}; Release Pins lets them follow the clip" if said else "")
+        written = reshaping.finish(self._ob, self._drawing, work.result)
+        frames, kept, hidden = written.frames, _on_frames(written.kept), _on_frames(written.hidden)
+        self.warn(f"your corrections stay: {kept}; Release Pins lets them follow the clip" if kept else "")
+        self.warn(f"parts that you marked as hidden have no contour: {hidden}; Part Is Hidden Here shows them again" if hidden else "")
         self.warn(guard.left_out(layers, hidden=True))
         self.tell(context, work.result, frames)
         given = ", ".join(f"{entry['part']}: {entry['follows']}" for entry in work.result.given)
@@ -80,6 +81,11 @@ class Reshaping(OnContours, Long):
             self.warn(note)
         end, last = context.scene.frame_end, self._drawing.frame + frames
         self.warn(f"the frames go on to {last}, beyond the end of the scene ({end})" if last > end else "")
+
+
+def _on_frames(parts: dict[str, list[int]]) -> str:
+    """Parts with their frames, as text."""
+    return ", ".join(f'"{part}" on {listed(on)}' for part, on in parts.items())
 
 
 def _pairs(text: str) -> list[list[str]]:

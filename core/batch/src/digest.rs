@@ -33,12 +33,28 @@ pub fn of_footage(footage: &Footage, folder: &Path) -> String {
     of_texts(frames.iter().map(String::as_str))
 }
 
-/// The hash of a step: what it reads, and how.
-pub fn of_step(step: &Step, document: &str, footage: &str) -> String {
-    let footage = if step.reads_footage() { footage } else { "" };
+/// What the steps of a shot read beside their document.
+#[derive(Clone, Debug, Default)]
+pub struct Frames {
+    /// The hash of the frames; empty if no step reads them.
+    pub hash: String,
+    /// The pattern of the frames as a document in the folder of the results has it.
+    pub pattern: String,
+}
+
+/// The hash of a step: what it reads, and how. What names the frames is another file where they are reached by another pattern.
+pub fn of_step(step: &Step, document: &str, frames: &Frames) -> String {
+    let hash = if step.reads_footage() { &frames.hash } else { "" };
+    let pattern = if step.names_footage() { &frames.pattern } else { "" };
     let words = step.words("", "");
-    let texts = [env!("CARGO_PKG_VERSION"), document, footage].into_iter().chain(words.iter().map(String::as_str));
-    of_texts(texts)
+    let texts = [env!("CARGO_PKG_VERSION"), document, hash, pattern].into_iter();
+    of_texts(texts.chain(words.iter().map(String::as_str)))
+}
+
+/// The hash of what a manifest asks for a shot: the words of all steps.
+pub fn of_steps(steps: &[Step]) -> String {
+    let each: Vec<String> = steps.iter().map(|step| of_texts(step.words("", "").iter().map(String::as_str))).collect();
+    of_texts(each.iter().map(String::as_str))
 }
 
 /// The hash of texts in their order. Each has its length before it, so no two lists run together.
@@ -60,16 +76,22 @@ mod tests {
         let step = |value| Step::read(&value).unwrap();
         let (track, export) = (step(json!({"do": "track"})), step(json!({"do": "export", "to": "a.svg"})));
         let other = step(json!({"do": "track", "preset": "zhou2011"}));
+        let frames = |hash: &str, pattern: &str| Frames { hash: hash.into(), pattern: pattern.into() };
         let all = [
-            of_step(&track, "d", "f"),
-            of_step(&track, "e", "f"),
-            of_step(&track, "d", "g"),
-            of_step(&other, "d", "f"),
+            of_step(&track, "d", &frames("f", "p")),
+            of_step(&track, "e", &frames("f", "p")),
+            of_step(&track, "d", &frames("g", "p")),
+            of_step(&track, "d", &frames("f", "q")),
+            of_step(&other, "d", &frames("f", "p")),
         ];
         for (k, hash) in all.iter().enumerate() {
             assert!(all[k + 1..].iter().all(|next| next != hash));
         }
-        assert_eq!(of_step(&export, "d", "f"), of_step(&export, "d", "g"), "an export reads no frames");
+        let of = |step: &Step, hash: &str, pattern: &str| of_step(step, "d", &frames(hash, pattern));
+        assert_eq!(of(&export, "f", "p"), of(&export, "g", "p"), "an export reads no frames");
+        assert_ne!(of(&export, "f", "p"), of(&export, "f", "q"), "but may name them");
+        let render = step(json!({"do": "render", "to": "a.png"}));
+        assert_eq!(of(&render, "f", "p"), of(&render, "f", "q"), "a picture names none");
         assert_ne!(of_texts(["ab", "c"].into_iter()), of_texts(["a", "bc"].into_iter()));
     }
 

@@ -6,9 +6,10 @@
 use crate::findings::Findings;
 use rototoon::project::{WriteError, write_whole};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Name of the file.
@@ -35,6 +36,9 @@ pub struct Record {
     /// Why the shot failed; empty if it did not.
     #[serde(default)]
     pub failure: String,
+    /// Hash of the steps that the last run came to its end with; empty while one has begun and not ended. Records of earlier versions have none.
+    #[serde(default)]
+    pub asked: Option<String>,
     /// Hash of what the findings and the contact sheet were made of.
     #[serde(default)]
     pub seen: String,
@@ -66,24 +70,71 @@ pub struct Done {
     pub messages: Vec<String>,
 }
 
+/// Why a record cannot be used. It stays as it is.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// It cannot be read, at least not now or not by this user.
+    #[error("{}: cannot read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// A later version of the program wrote it.
+    #[error("{}: found a record of version {version}, expected {VERSION}: a later version of the program wrote it", path.display())]
+    Later {
+        /// The file.
+        path: PathBuf,
+        /// The version of its format.
+        version: u64,
+    },
+    /// It is damaged, and cannot be renamed.
+    #[error(transparent)]
+    Aside(#[from] WriteError),
+}
+
+/// What is found in the place of a record.
+pub(crate) enum Found {
+    /// No file.
+    None,
+    /// A record.
+    Record(Box<Record>),
+    /// A file that is no record.
+    Damaged,
+}
+
 impl Record {
-    /// Reads the record of a folder. One that cannot be read is set aside under another name: its path is returned too.
+    /// Reads the record of a folder. What was read and is none is set aside under another name: its path is returned too.
     ///
     /// # Errors
     ///
-    /// The damaged record cannot be renamed.
-    pub fn read(folder: &Path) -> Result<(Self, Option<PathBuf>), WriteError> {
-        let path = folder.join(RECORD);
+    /// A record that cannot be read, or is of a later version; a damaged one that cannot be renamed.
+    pub fn read(folder: &Path) -> Result<(Self, Option<PathBuf>), RecordError> {
         let empty = Self { rototoon_record: VERSION, ..Self::default() };
+        match Self::find(folder)? {
+            Found::Record(record) => Ok((*record, None)),
+            Found::None => Ok((empty, None)),
+            Found::Damaged => Ok((empty, Some(set_aside(folder, &folder.join(RECORD))?))),
+        }
+    }
+
+    /// Looks for the record of a folder. Nothing is changed.
+    pub(crate) fn find(folder: &Path) -> Result<Found, RecordError> {
+        let path = folder.join(RECORD);
         let text = match rototoon::file::text(&path) {
             Ok(text) => text,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok((empty, None)),
-            Err(_) => String::new(),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Found::None),
+            Err(error) if error.kind() == ErrorKind::InvalidData => return Ok(Found::Damaged),
+            Err(source) => return Err(RecordError::Read { path, source }),
         };
-        match serde_json::from_str::<Self>(&text) {
-            Ok(record) if record.rototoon_record == VERSION => Ok((record, None)),
-            _ => Ok((empty, Some(set_aside(folder, &path)?))),
+        let Ok(value) = serde_json::from_str::<Value>(&text) else { return Ok(Found::Damaged) };
+        match value.get("rototoon_record").and_then(Value::as_u64) {
+            Some(version) if version > VERSION => return Err(RecordError::Later { path, version }),
+            Some(VERSION) => {}
+            _ => return Ok(Found::Damaged),
         }
+        Ok(serde_json::from_value(value).map_or(Found::Damaged, |record| Found::Record(Box::new(record))))
     }
 
     /// Writes the record.
@@ -152,11 +203,29 @@ mod tests {
     #[test]
     fn a_damaged_record_is_kept_under_another_name() {
         let folder = tempfile::tempdir().unwrap();
-        for (n, text) in ["{", r#"{"rototoon_record": 9, "steps": []}"#].iter().enumerate() {
+        let whole = r#"{"rototoon_record": 1, "steps": []}"#;
+        for text in ["{", "", r#"{"rototoon_record": 0, "steps": []}"#, &whole[..20], r#"{"rototoon_record": 1}"#] {
             fs::write(folder.path().join(RECORD), text).unwrap();
             let (record, aside) = Record::read(folder.path()).unwrap();
             assert_eq!(record.steps, []);
-            assert_eq!(fs::read_to_string(aside.unwrap()).unwrap(), *text, "{n}");
+            assert_eq!(fs::read_to_string(aside.unwrap()).unwrap(), text);
         }
+    }
+
+    #[test]
+    fn a_record_of_a_later_version_or_out_of_reach_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(RECORD);
+        let later = r#"{"rototoon_record": 9, "stages": []}"#;
+        fs::write(&path, later).unwrap();
+        let error = Record::read(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("found a record of version 9, expected 1"), "{error}");
+        assert_eq!(fs::read_to_string(&path).unwrap(), later);
+        fs::remove_file(&path).unwrap();
+        fs::create_dir(&path).unwrap();
+        let error = Record::read(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("batch.json: cannot read: "), "{error}");
+        assert!(path.is_dir());
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 }

@@ -144,7 +144,7 @@ impl Run<'_> {
             // A folder that vanished concerns this shot alone.
             Err(error) => Outcome::Failed(error.to_string()),
         };
-        let record = Record::read(&folder).map(|(record, _)| record).unwrap_or_default();
+        let record = read_record(&folder).ok().flatten().unwrap_or_default();
         self.report.line(line(shot, &outcome, &record))?;
         Ok(Some(outcome))
     }

@@ -1,16 +1,19 @@
 //! All steps of a shot, in its folder.
 
+mod files;
+
 use crate::child::{Ended, Program};
+use crate::digest::{self, Frames};
 use crate::findings::Findings;
 use crate::lock::Lock;
 use crate::manifest::Shot;
-use crate::record::{Done, Record};
+use crate::page;
+use crate::record::{Done, Record, RecordError};
 use crate::step::Step;
-use crate::{digest, page};
 use rototoon::memory::Bytes;
+use rototoon::pipeline;
 use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
-use rototoon::scene::Footage;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -107,6 +110,9 @@ pub enum ShotError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The record cannot be used.
+    #[error(transparent)]
+    Record(#[from] RecordError),
     /// A file cannot be read or renamed.
     #[error("{}: {source}", path.display())]
     File {
@@ -135,8 +141,8 @@ struct Work<'a> {
     record: Record,
     /// Takes the steps; started for the first one that is not done.
     program: Option<Program>,
-    /// Names of the steps that this run did.
-    did: Vec<&'static str>,
+    /// Names of the steps that this run did for the first time.
+    fresh: Vec<&'static str>,
 }
 
 /// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
@@ -147,7 +153,7 @@ struct Work<'a> {
 /// The record cannot be read or written; the batch was stopped.
 pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
     let (record, aside) = Record::read(folder)?;
-    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, did: Vec::new() };
+    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, fresh: Vec::new() };
     let result = work.steps();
     work.program = None;
     work.record.failure = match result {
@@ -160,21 +166,17 @@ pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<R
         work.record.failure =
             [work.record.failure, note].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join("; ");
     }
+    work.record.asked = Some(digest::of_steps(&shot.steps));
     work.record.write(folder)?;
     Ok(work.record)
 }
 
 impl Work<'_> {
     fn steps(&mut self) -> Result<(), ShotError> {
-        // First of all, so that what a killed worker renamed is known as the batch's own.
+        // First of all, so that what a killed worker renamed is known as the batch's own. What cannot get its name may not be wanted any more.
         self.place()?;
         let mut document = absolute(&self.shot.project);
-        let footage = self.footage(&document)?;
-        let frames = if self.shot.steps.iter().any(Step::reads_footage) {
-            digest::of_footage(&footage, &folder_of(&document, &footage))
-        } else {
-            String::new()
-        };
+        let frames = self.frames(&document)?;
         for (index, step) in self.shot.steps.iter().enumerate() {
             if (self.worker.stop)() {
                 return Err(ShotError::Stopped);
@@ -186,18 +188,22 @@ impl Work<'_> {
                 document = self.folder.join(output);
             }
         }
+        self.give_up_pending()?;
         self.forget()?;
         self.record.ended_bytes = 0;
         // Its memory is free from here on.
         self.program = None;
-        self.find(&document, &frames)
+        self.find(&document, &frames.hash)
     }
 
-    fn footage(&self, document: &Path) -> Result<Footage, ShotError> {
-        match Document::load(document) {
-            Ok(document) => Ok(document.scene.footage),
-            Err(error) => Err(ShotError::Step(error.lines().join("; "))),
-        }
+    /// The frames of the shot's project.
+    fn frames(&self, project: &Path) -> Result<Frames, ShotError> {
+        let mut document = Document::load(project).map_err(|error| ShotError::Step(error.lines().join("; ")))?;
+        let home = folder_of(project, &document.scene.footage);
+        let is_read = self.shot.steps.iter().any(Step::reads_footage);
+        let hash = if is_read { digest::of_footage(&document.scene.footage, &home) } else { String::new() };
+        pipeline::relocate(&mut document, &home, &self.folder);
+        Ok(Frames { hash, pattern: document.scene.footage.pattern })
     }
 
     /// Reads what the newest document says, and draws its contact sheet.
@@ -220,7 +226,10 @@ impl Work<'_> {
             self.tell(step, StepOutcome::Unchanged, None);
             return Ok(());
         }
-        self.clear()?;
+        if let Some(path) = self.kept_out(reads) {
+            return Err(ShotError::Foreign(path));
+        }
+        self.begin()?;
         let ended = self.start(index, step, document)?;
         if ended.stopped || (ended.interrupted && self.is_stopped_soon()) {
             self.clear()?;
@@ -237,6 +246,17 @@ impl Work<'_> {
         self.finish(index, step, reads, &ended)?;
         self.tell(step, StepOutcome::Done, Some(&ended));
         Ok(())
+    }
+
+    /// Makes ready for a step that is not done. What the last run came to holds no longer, also if this one is stopped or killed.
+    fn begin(&mut self) -> Result<(), ShotError> {
+        self.give_up_pending()?;
+        self.clear()?;
+        if self.record.asked.as_deref() == Some("") && self.record.failure.is_empty() {
+            return Ok(());
+        }
+        (self.record.asked, self.record.failure) = (Some(String::new()), String::new());
+        Ok(self.record.write(&self.folder)?)
     }
 
     /// Whether the batch is asked to end now or in a moment. A signal to a group of processes, such as Ctrl-C, may reach the program of the steps first.
@@ -256,31 +276,6 @@ impl Work<'_> {
         let Some(at) = self.record.steps.iter().skip(index).position(|done| is_done(&done)) else { return false };
         self.record.steps[index..=index + at].rotate_right(1);
         true
-    }
-
-    /// Whether a file of the folder has a hash.
-    fn has(&self, name: &str, hash: &str) -> bool {
-        digest::of_file(&self.folder.join(name)).is_ok_and(|found| found == hash)
-    }
-
-    /// Removes what a step left that did not come to its end.
-    fn clear(&self) -> Result<(), ShotError> {
-        for name in self.new_files()? {
-            let path = self.folder.join(&name);
-            fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
-        }
-        Ok(())
-    }
-
-    /// Files with their first names, sorted.
-    fn new_files(&self) -> Result<Vec<String>, ShotError> {
-        let failed = |source| ShotError::File { path: self.folder.clone(), source };
-        let mut names = Vec::new();
-        for entry in fs::read_dir(&self.folder).map_err(failed)? {
-            names.extend(entry.map_err(failed)?.file_name().into_string().ok().filter(|name| name.starts_with(NEW)));
-        }
-        names.sort();
-        Ok(names)
     }
 
     fn start(&mut self, index: usize, step: &Step, document: &Path) -> Result<Ended, ShotError> {
@@ -326,15 +321,19 @@ impl Work<'_> {
             kept_bytes: ended.kept_bytes,
             messages: ended.messages.clone(),
         };
-        self.did.push(step.name());
         let before = self.enter(index, done);
+        if before.is_none() {
+            self.fresh.push(step.name());
+        }
         self.record.write(&self.folder)?;
-        self.place()?;
-        self.remove_old(&before)
+        if let Some(path) = self.place()? {
+            return Err(ShotError::Foreign(path));
+        }
+        self.remove_old(&before.unwrap_or_default())
     }
 
-    /// Puts a step into its place in the record. Returns the files of the earlier run of this step.
-    fn enter(&mut self, index: usize, done: Done) -> Vec<String> {
+    /// Puts a step into its place in the record. Returns the files of the earlier run of this step, if there was one.
+    fn enter(&mut self, index: usize, done: Done) -> Option<Vec<String>> {
         // Later steps stay: if they read what has changed, their hashes say so. Files tell which one is the same step.
         let same = |old: &Done| {
             if done.outputs.is_empty() {
@@ -345,55 +344,19 @@ impl Work<'_> {
         };
         let before = self.record.steps.iter().skip(index).position(same).map(|at| self.record.steps.remove(index + at));
         self.record.steps.insert(index, done);
-        before.map(|old| old.outputs).unwrap_or_default()
+        before.map(|old| old.outputs)
     }
 
-    /// Forgets the steps that the manifest no longer has. Their files stay, but not those of a step that now writes others.
+    /// Forgets the steps that the manifest no longer has. Their files stay, but not those of a step that now writes others: for each that is
+    /// forgotten there is a new one with the same subcommand.
     fn forget(&mut self) -> Result<(), ShotError> {
         let old = self.record.steps.split_off(self.shot.steps.len().min(self.record.steps.len()));
-        let renamed = old.into_iter().filter(|old| self.did.contains(&old.step.as_str()));
-        let names: Vec<String> = renamed.flat_map(|old| old.outputs).collect();
+        let is_renamed = |own: &&Done| {
+            let forgotten = old.iter().filter(|old| old.step == own.step).count();
+            forgotten <= self.fresh.iter().filter(|name| **name == own.step).count()
+        };
+        let names: Vec<String> = old.iter().filter(is_renamed).flat_map(|old| old.outputs.clone()).collect();
         if names.is_empty() { Ok(()) } else { self.remove_old(&names) }
-    }
-
-    /// Gives pending files their names. A file that is there must be one of the batch.
-    fn place(&mut self) -> Result<(), ShotError> {
-        if self.record.pending.is_empty() {
-            return Ok(());
-        }
-        for (name, hash) in self.record.pending.clone() {
-            let (from, to) = (self.folder.join(format!("{NEW}{name}")), self.folder.join(&name));
-            let found = digest::of_file(&to).ok();
-            let own =
-                found.is_none() || found.as_ref() == Some(&hash) || found.as_ref() == self.record.files.get(&name);
-            if !own || (found.is_none() && fs::symlink_metadata(&to).is_ok()) {
-                return Err(ShotError::Foreign(to));
-            }
-            if self.has(&format!("{NEW}{name}"), &hash) {
-                fs::rename(&from, &to).map_err(|source| ShotError::File { path: to, source })?;
-            } else if found.as_ref() != Some(&hash) {
-                // It is gone; what is there now keeps its own hash.
-                continue;
-            }
-            self.record.files.insert(name, hash);
-        }
-        self.record.pending.clear();
-        Ok(self.record.write(&self.folder)?)
-    }
-
-    /// Removes files of an earlier run that no step writes any more, if nobody changed them.
-    fn remove_old(&mut self, names: &[String]) -> Result<(), ShotError> {
-        for name in names {
-            if self.record.steps.iter().any(|done| done.outputs.contains(name)) {
-                continue;
-            }
-            let Some(hash) = self.record.files.remove(name) else { continue };
-            if self.has(name, &hash) {
-                let path = self.folder.join(name);
-                fs::remove_file(&path).map_err(|source| ShotError::File { path, source })?;
-            }
-        }
-        Ok(self.record.write(&self.folder)?)
     }
 
     fn tell(&self, step: &Step, outcome: StepOutcome, ended: Option<&Ended>) {
@@ -451,6 +414,7 @@ fn absolute(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]
     fn messages_have_the_final_names_of_files() {
@@ -463,18 +427,22 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_step_that_the_system_ends_leaves_its_last_words_and_what_it_held() {
-        let folder = tempfile::tempdir().unwrap();
-        let project = folder.path().join("project.json");
-        // The program is asked for `steps` in this folder: a shell takes that as its script.
-        let script = "read a; echo 'memory allocation of 7 bytes failed' >&2; echo 'note: here' >&2
-            echo 'stack backtrace:' >&2; echo '   0: main' >&2; sleep 0.5; kill -9 $$";
-        fs::write(folder.path().join("steps"), script).unwrap();
+    /// A shot in a folder, with one step, which a shell takes as this script: the program is asked for `steps` there.
+    fn shot(folder: &Path, script: &str) -> Shot {
+        let project = folder.join("project.json");
+        fs::write(folder.join("steps"), script).unwrap();
         let footage = json!({"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 64, "height": 48});
         fs::write(&project, json!({"rototoon": 1, "footage": footage, "parts": []}).to_string()).unwrap();
         let steps = vec![Step::read(&json!({"do": "check"})).unwrap()];
-        let shot = Shot { name: "a".into(), project, blend: None, steps };
+        Shot { name: "a".into(), project, blend: None, steps }
+    }
+
+    #[test]
+    fn a_step_that_the_system_ends_leaves_its_last_words_and_what_it_held() {
+        let folder = tempfile::tempdir().unwrap();
+        let script = "read a; echo 'memory allocation of 7 bytes failed' >&2; echo 'note: here' >&2
+            echo 'stack backtrace:' >&2; echo '   0: main' >&2; sleep 0.5; kill -9 $$";
+        let shot = shot(folder.path(), script);
         let (lock, told) = (Lock::take(folder.path()).unwrap().unwrap(), |_: &Shot, _: &News| {});
         let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &|| false, told: &told };
         let record = run(&shot, folder.path(), &lock, &worker).unwrap();
@@ -485,5 +453,22 @@ mod tests {
             assert!(record.ended_bytes > 0 && failure.contains(" while it held "), "{failure}");
         }
         assert_eq!(Record::read(folder.path()).unwrap().0.peak_bytes(), record.ended_bytes);
+    }
+
+    #[test]
+    fn a_run_that_is_stopped_leaves_no_failure_of_an_earlier_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let shot = shot(folder.path(), "read a; exec sleep 60");
+        let asked = Some(digest::of_steps(&shot.steps));
+        let old = Record { rototoon_record: 1, failure: "old".into(), asked, ..Record::default() };
+        old.write(folder.path()).unwrap();
+        let began = AtomicBool::new(false);
+        let told = |_: &Shot, _: &News| began.store(true, Ordering::Relaxed);
+        let stop = || began.load(Ordering::Relaxed);
+        let lock = Lock::take(folder.path()).unwrap().unwrap();
+        let worker = Worker { program: Path::new("/bin/sh"), threads: 1, keep: 0, stop: &stop, told: &told };
+        assert!(matches!(run(&shot, folder.path(), &lock, &worker), Err(ShotError::Stopped)));
+        let (record, _) = Record::read(folder.path()).unwrap();
+        assert_eq!((record.failure.as_str(), record.asked.as_deref()), ("", Some("")));
     }
 }

@@ -94,6 +94,11 @@ impl Step {
         !matches!(self.kind, Kind::Export | Kind::Tween)
     }
 
+    /// Whether what it writes may name the frames of the footage.
+    pub fn names_footage(&self) -> bool {
+        self.writes_document() || self.kind == Kind::Export
+    }
+
     /// Whether it draws all frames of the document under a plain name, which is enough for one.
     pub fn names_one_picture(&self) -> bool {
         let plain = |name: &String| matches!(FramePattern::parse(name), Err(PatternError::NoNumber { .. }));

@@ -1,13 +1,13 @@
 //! What the records of all shots together say: `summary.json`.
 
+use crate::digest;
 use crate::findings::WantedKey;
 use crate::manifest::{Manifest, Shot};
 use crate::names::SUMMARY;
-use crate::record::{RECORD, Record};
+use crate::record::{Found, Record};
 use crate::report::rounded;
 use rototoon::project::{WriteError, write_whole};
 use serde_json::{Value, json};
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// How a shot came out.
@@ -19,7 +19,7 @@ pub enum Outcome {
     WantsKeys,
     /// A step failed, for this reason.
     Failed(String),
-    /// No worker has ended it.
+    /// No worker has ended it with the steps of the manifest.
     NotRun,
 }
 
@@ -156,19 +156,19 @@ pub fn write_own(path: &Path, bytes: &[u8], mark: &str) -> Result<(), WriteError
     Err(WriteError { path: path.to_owned(), source })
 }
 
-/// Whether a record is of a shot that came to its end: all steps are done, or one failed.
+/// Whether a record is of a shot that came to its end with the steps that the manifest has now: all are done, or one failed.
 fn finished(shot: &Shot, record: &Record) -> bool {
-    !record.failure.is_empty() || (record.steps.len() == shot.steps.len() && record.pending.is_empty())
+    let asked = record.asked.as_ref().is_none_or(|asked| *asked == digest::of_steps(&shot.steps));
+    asked && (!record.failure.is_empty() || (record.steps.len() == shot.steps.len() && record.pending.is_empty()))
 }
 
-/// The record of a shot, if there is one; the reason if it cannot be reached. Nothing is changed: the next worker sets a damaged
+/// The record of a shot, if there is one; the reason if it cannot be used. Nothing is changed: the next worker sets a damaged
 /// one aside.
 pub(crate) fn read_record(folder: &Path) -> Result<Option<Record>, String> {
-    let path = folder.join(RECORD);
-    match rototoon::file::text(&path) {
-        Ok(text) => Ok(serde_json::from_str(&text).ok()),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::InvalidData) => Ok(None),
-        Err(error) => Err(format!("{}: cannot read: {error}", path.display())),
+    match Record::find(folder) {
+        Ok(Found::Record(record)) => Ok(Some(*record)),
+        Ok(Found::None | Found::Damaged) => Ok(None),
+        Err(error) => Err(error.to_string()),
     }
 }
 

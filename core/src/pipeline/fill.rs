@@ -11,6 +11,7 @@
 //!
 //! A colour that becomes another one on some frames ([`crate::project::recolours`]) does so when regions are written. They are carried in the old one.
 
+mod numbers;
 mod pages;
 #[cfg(test)]
 mod tests;
@@ -96,10 +97,13 @@ pub fn fill(
     report.missed.sort_by_key(|missed| (missed.entry, missed.click));
     report.overruled.sort_by_key(|missed| (missed.entry, missed.click));
     report.leaking.sort_by_key(|leak| (leak.place.entry, leak.place.click));
-    found.retain(|drawing| range.contains(&drawing.frame));
-    let kept: Vec<FilledDrawing> = earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)).collect();
+    let within = |drawing: &FilledDrawing| range.contains(&drawing.frame);
+    let way: Vec<FilledDrawing> = found.extract_if(.., |drawing| !within(drawing)).collect();
+    let kept: Vec<FilledDrawing> = earlier.iter().filter(|drawing| !within(drawing)).cloned().collect();
     report.recoloured = recolour(&recolours, &mut found, &kept, &range);
-    keep_apart(&mut found, &kept);
+    if !kept.is_empty() {
+        numbers::as_before(&mut found, &way, &earlier);
+    }
     found.extend(kept);
     found.sort_by_key(|drawing| drawing.frame);
     report.frames.retain(|frame| range.contains(&frame.frame));
@@ -127,25 +131,6 @@ fn recolour(
     told.filter(|(_, (own, _))| range.clone().any(|frame| own.is_on(frame)))
         .map(|(entry, (own, regions))| Recoloured { entry, what: own.to_string(), from: own.from.clone(), regions })
         .collect()
-}
-
-/// Gives new numbers to regions whose number has another colour on frames that were kept from an earlier run.
-fn keep_apart(found: &mut [FilledDrawing], kept: &[FilledDrawing]) {
-    let regions = |drawings: &[FilledDrawing]| -> Vec<(usize, Hue)> {
-        drawings.iter().flat_map(|drawing| &drawing.regions).map(|region| (region.track, region.hue())).collect()
-    };
-    let (new, old) = (regions(found), regions(kept));
-    let colours: BTreeMap<usize, Hue> = old.iter().cloned().collect();
-    let mut next = new.iter().chain(&old).map(|own| own.0 + 1).max().unwrap_or(0);
-    let mut renamed: BTreeMap<usize, usize> = BTreeMap::new();
-    for region in found.iter_mut().flat_map(|drawing| &mut drawing.regions) {
-        if colours.get(&region.track).is_some_and(|own| !own.is_same(&region.hue())) {
-            region.track = *renamed.entry(region.track).or_insert_with(|| {
-                next += 1;
-                next - 1
-            });
-        }
-    }
 }
 
 /// The frames with clicks, each with its place in the document. Clicks have the colours that they mean.

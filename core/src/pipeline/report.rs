@@ -194,6 +194,12 @@ pub(super) fn runs(frames: &[FrameNumber]) -> String {
     runs.collect::<Vec<_>>().join(", ")
 }
 
+/// The first and last frames of stretches as text: "4-6, 9".
+pub(super) fn ranges(frames: impl Iterator<Item = (FrameNumber, FrameNumber)>) -> String {
+    let text = |(first, last)| if first == last { format!("{first}") } else { format!("{first}-{last}") };
+    frames.map(text).collect::<Vec<_>>().join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

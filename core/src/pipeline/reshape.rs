@@ -12,6 +12,7 @@
 //! - `depths`: what is in front of what on each frame
 //! - `store`: the result in the document
 //! - `kept`: what the artist corrected on an earlier result
+//! - `own`: what the drawing's own motion has and a result has not
 //! - `sunk`: parts that go through the ground
 //! - `hover`: feet that never reach it
 //! - `told`: what is said about the result
@@ -26,6 +27,7 @@ mod lines;
 mod loose;
 mod motion;
 mod moves;
+mod own;
 mod rate;
 mod store;
 mod sunk;
@@ -41,6 +43,8 @@ use crate::scene::limbs::{Binding, LimbSet};
 use crate::scene::{Clip, Footage, FrameNumber, Part, Progress};
 use bodies::{Body, Moved};
 use kept::Corrections;
+use motion::Motion;
+use own::OwnMotion;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -134,6 +138,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let set = document.limbs().map_err(wrong)?;
     let rest = rest_frame(&document.scene.parts, job.rest)?;
     let strokes = strokes_at(document, rest)?;
+    let own = OwnMotion::of(document, &set, rest)?;
     let mut corrections = Corrections::of(document, rest)?;
     let outdated = corrections.outdated(document, rest);
     let footage = footage(&document.scene.footage, job);
@@ -143,29 +148,48 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let (mut bodies, loose) = bodies::of(parts, &strokes, &set, &motion, rest)?;
     add_points(&mut bodies, &job.points)?;
     let depths = depths::of(&set, parts, &bodies, footage.first..=footage.last)?;
+    let moved = all_moved(&bodies, &motion, parts, &job.options, progress)?;
+    let mut report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
+    let mut placed = rebound(&set, &bindings, parts, rest);
+    let loose: Vec<_> =
+        loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
+    own.forget(document);
+    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
+    correct(document, &mut corrections, &mut report);
+    // All frames show the drawing at rest, and with it its side.
+    let frames = (document.scene.footage.first, document.scene.footage.last);
+    placed.swaps = if set.swapped(rest) { vec![frames] } else { Vec::new() };
+    document.set_limbs(&placed);
+    if strokes.is_empty() {
+        report.notes.extend(own.show_no_strokes(document, rest));
+    }
+    let same = job.clip.template.same_points(&set.template) && job.chains.is_empty();
+    report.notes.extend(outdated);
+    report.notes.extend(guesses::followed(job.clip, (&set, &document.scene.parts), report.mirrored, same));
+    report.remarks.extend(own.said());
+    report.remarks.extend(depths.said);
+    Ok(report)
+}
+
+/// All bodies on every frame of the clip.
+fn all_moved(
+    bodies: &[Body],
+    motion: &Motion,
+    parts: &[Part],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Vec<Moved>, PipelineError> {
     progress.report(STEP, 0.05)?;
     let done = AtomicUsize::new(0);
     let moved = bodies.par_iter().map(|body| {
-        let moved = body.moved(&motion, parts, &job.options)?;
+        let moved = body.moved(motion, parts, options)?;
         let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
         progress.report(STEP, 0.05 + 0.95 * finished as f64 / bodies.len() as f64)?;
         Ok(moved)
     });
     // Of several errors the first part's is told, whichever was met first.
     let moved: Vec<Result<Moved, PipelineError>> = moved.collect();
-    let moved = moved.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let mut report = told::report(parts, (&bodies, &moved), &loose, &motion, footage.first);
-    let placed = rebound(&set, &bindings, parts, rest);
-    let loose: Vec<_> =
-        loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
-    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
-    document.set_limbs(&placed);
-    correct(document, &mut corrections, &mut report);
-    let same = job.clip.template.same_points(&set.template) && job.chains.is_empty();
-    report.notes.extend(outdated);
-    report.notes.extend(guesses::followed(job.clip, (&set, &document.scene.parts), report.mirrored, same));
-    report.remarks.extend(depths.said);
-    Ok(report)
+    moved.into_iter().collect()
 }
 
 /// Notes which keys were made, and puts the artist's corrections of an earlier result into the new one.
@@ -226,10 +250,15 @@ fn rest_frame(parts: &[Part], asked: Option<FrameNumber>) -> Result<FrameNumber,
     })
 }
 
-/// The strokes of the drawing on the frame at rest.
+/// The strokes of the drawing on the frame at rest. Between key drawings they are those of its in-between that are more seen than not.
 fn strokes_at(document: &Document, rest: FrameNumber) -> Result<Vec<DrawnStroke>, PipelineError> {
     let read = document.drawings().map_err(wrong)?;
-    Ok(read.drawings.into_iter().find(|drawing| drawing.frame == rest).map_or_else(Vec::new, |d| d.strokes))
+    if let Some(drawing) = read.drawings.into_iter().find(|drawing| drawing.frame == rest) {
+        return Ok(drawing.strokes);
+    }
+    let between = document.in_betweens().map_err(wrong)?.into_iter().filter(|between| between.frame == rest);
+    let seen = between.flat_map(|between| between.strokes).filter(|(_, opacity, _)| *opacity >= 0.5);
+    Ok(seen.map(|(_, _, stroke)| stroke).collect())
 }
 
 fn footage(own: &Footage, job: &ReshapeJob) -> Footage {
@@ -265,6 +294,8 @@ fn rebound(set: &LimbSet, bindings: &Bindings, parts: &[Part], rest: FrameNumber
 mod animals;
 #[cfg(test)]
 mod scenery;
+#[cfg(test)]
+mod shots;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -79,6 +79,49 @@ fn only_what_changed_is_done_again() {
 }
 
 #[test]
+fn shots_and_results_may_move() {
+    let season = Season::new(1);
+    let [track, snap] = [1, 2].map(|k| steps()[k].clone());
+    season.manifest(&json!([track]), 1);
+    season.good(&[]);
+    let pattern = |place: &str| {
+        let document: Value = serde_json::from_slice(&fs::read(season.path(place)).unwrap()).unwrap();
+        document["footage"]["pattern"].as_str().unwrap().to_owned()
+    };
+    // The shot goes to another disk, and later steps read its pictures there.
+    fs::create_dir(season.path("disk2")).unwrap();
+    fs::rename(season.path("in"), season.path("disk2/in")).unwrap();
+    let manifest = |steps: Value| {
+        let shots = json!([{"name": "sh0", "project": "disk2/in/sh0/project.json"}]);
+        fs::write(season.path("m.json"), json!({"rototoon_batch": 1, "steps": steps, "shots": shots}).to_string())
+            .unwrap();
+    };
+    manifest(json!([track, snap]));
+    season.good(&[]);
+    assert_eq!(pattern("out/sh0/tracked.json"), "../../disk2/in/sh0/f_%03d.png");
+    // So do the results.
+    fs::create_dir(season.path("night")).unwrap();
+    fs::rename(season.path("out"), season.path("night/out")).unwrap();
+    let good = |folder: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rototoon"));
+        let command = command.current_dir(season.path(folder)).args(["batch", "m.json", "-o", "night/out"]);
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    good("");
+    assert_eq!(pattern("night/out/sh0/snapped.json"), "../../../disk2/in/sh0/f_%03d.png");
+    // Where both move together, nothing is done again.
+    fs::create_dir(season.path("farm")).unwrap();
+    for name in ["night", "disk2", "m.json"] {
+        fs::rename(season.path(name), season.path("farm").join(name)).unwrap();
+    }
+    fs::remove_file(season.path("farm/night/out/report.jsonl")).unwrap();
+    good("farm");
+    let report = fs::read_to_string(season.path("farm/night/out/report.jsonl")).unwrap();
+    assert!(report.contains("\"unchanged\"") && !report.contains("\"done\""), "{report}");
+}
+
+#[test]
 fn steps_may_be_inserted_moved_and_taken_out() {
     let season = Season::new(1);
     let names = |season: &Season| season.results().into_keys().collect::<Vec<_>>();
@@ -107,6 +150,29 @@ fn steps_may_be_inserted_moved_and_taken_out() {
     assert!(run(&json!([track, snap])).is_empty());
     assert!(before.keys().all(|name| names(&season).contains(name)), "{:?}", names(&season));
     assert_eq!(run(&json!([render, export])).len(), 2, "they read another document now");
+}
+
+#[test]
+fn files_of_a_step_that_is_taken_out_stay_where_others_of_its_kind_are_done() {
+    let season = Season::new(1);
+    let render = |what: &str, to: &str| json!({"do": "render", "what": what, "to": to});
+    let (track, matte, ids) = (json!({"do": "track"}), render("matte", "a_%03d.png"), render("ids", "b_%03d.exr"));
+    let run = |steps: &Value| {
+        season.manifest(steps, 1);
+        season.good(&[]);
+        season.results().into_keys().filter(|name| name.contains("_002")).collect::<Vec<_>>()
+    };
+    assert_eq!(run(&json!([track, matte, ids])), ["sh0/a_002.png", "sh0/b_002.exr"]);
+    draw(&season.path("in/sh0/f_002.png"), 11);
+    assert_eq!(run(&json!([track, ids])), ["sh0/a_002.png", "sh0/b_002.exr"], "the ids are done again");
+    // One new step for two old ones: nothing says which of them has another name now.
+    assert_eq!(run(&json!([track, matte, ids])).len(), 2);
+    assert_eq!(
+        run(&json!([track, render("matte", "c_%03d.png")])),
+        ["sh0/a_002.png", "sh0/b_002.exr", "sh0/c_002.png"]
+    );
+    assert_eq!(run(&json!([track, render("matte", "d_%03d.png")])).last().unwrap(), "sh0/d_002.png");
+    assert!(!season.path("out/sh0/c_002.png").exists(), "one for one: it has another name");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Tests of `rototoon batch` where things go wrong: long manifests, strange paths, folders that vanish, full disks, clocks.
 
-use crate::season::{Season, outcomes, steps};
+use crate::season::{Season, draw, outcomes, steps};
 use serde_json::{Value, json};
 use std::fs;
 #[cfg(unix)]
@@ -89,6 +89,87 @@ fn a_folder_of_results_that_is_gone_or_no_folder_concerns_its_shot_alone() {
     assert_eq!(season.run(&["--summary"]).status.code(), Some(1));
     let found = summary(&season)["shots"][1].clone();
     assert!(cfg!(windows) || found["failure"].as_str().unwrap().contains("sh1"), "{found}");
+}
+
+fn outcome(season: &Season) -> Value {
+    season.run(&["--summary"]);
+    summary(season)["shots"][0]["outcome"].clone()
+}
+
+#[test]
+fn a_summary_counts_only_what_was_run_with_the_manifest() {
+    let season = Season::new(1);
+    season.good(&[]);
+    assert_eq!(outcome(&season), "good");
+    // As many steps, and another one among them.
+    let mut other = steps();
+    other[4]["to"] = json!("shapes.nk");
+    season.manifest(&other, 1);
+    assert_eq!(outcome(&season), "not_run");
+    season.good(&[]);
+    assert_eq!(outcome(&season), "good");
+    // A failure of other steps.
+    fs::write(season.path("out/sh0/mine.svg"), "mine").unwrap();
+    other[4]["to"] = json!("mine.svg");
+    season.manifest(&other, 1);
+    season.run(&[]);
+    assert_eq!(outcome(&season), "failed");
+    season.manifest(&steps(), 1);
+    assert_eq!(outcome(&season), "not_run");
+    // A record of an earlier version does not say what was asked.
+    season.good(&[]);
+    let mut record = season.record("sh0");
+    record.as_object_mut().unwrap().remove("asked");
+    fs::write(season.path("out/sh0/batch.json"), record.to_string()).unwrap();
+    assert_eq!(outcome(&season), "good");
+}
+
+/// A season of one shot, in which a file of somebody else has the name of an export.
+fn with_a_file_of_others() -> Season {
+    let season = Season::new(1);
+    fs::create_dir_all(season.path("out/sh0")).unwrap();
+    fs::write(season.path("out/sh0/shapes.svg"), "mine").unwrap();
+    assert_eq!(season.run(&[]).status.code(), Some(1));
+    season.clear_report();
+    season
+}
+
+fn done(season: &Season) -> Vec<String> {
+    let events = season.events("step").into_iter().filter(|event| event["outcome"] == "done");
+    events.map(|event| event["step"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn a_shot_goes_on_where_a_step_gets_another_name_than_a_file_of_others() {
+    let mut other = steps();
+    other[4]["to"] = json!("other.svg");
+    let mut without = steps();
+    without.as_array_mut().unwrap().pop();
+    for (manifest, wanted) in [(other, &["export"][..]), (without, &[])] {
+        let season = with_a_file_of_others();
+        season.manifest(&manifest, 1);
+        season.good(&[]);
+        assert_eq!(done(&season), wanted);
+        assert_eq!(fs::read_to_string(season.path("out/sh0/shapes.svg")).unwrap(), "mine");
+        assert!(!season.path("out/sh0/.new-shapes.svg").exists());
+        assert_eq!(season.record("sh0")["pending"], json!({}));
+    }
+}
+
+#[test]
+fn a_shot_goes_on_where_a_file_of_others_is_moved_away() {
+    let season = with_a_file_of_others();
+    let said = String::from_utf8(season.run(&[]).stderr).unwrap();
+    assert!(said.contains("choose another name in `to`") && done(&season).is_empty(), "{said}");
+    // A new picture: the steps before it are done again all the same.
+    draw(&season.path("in/sh0/f_002.png"), 11);
+    assert_eq!(season.run(&[]).status.code(), Some(1));
+    assert_eq!(done(&season), ["check", "track", "snap", "render", "export"]);
+    season.clear_report();
+    fs::rename(season.path("out/sh0/shapes.svg"), season.path("out/sh0/mine.svg")).unwrap();
+    season.good(&[]);
+    assert!(done(&season).is_empty(), "the export waits for its name");
+    assert!(fs::read_to_string(season.path("out/sh0/shapes.svg")).unwrap().contains("<svg"));
 }
 
 #[cfg(unix)]

@@ -1,6 +1,7 @@
 mod cached;
 mod leaks;
 mod mending;
+mod numbers;
 mod opens;
 mod recolours;
 mod vanished;

@@ -6,17 +6,19 @@
 //! - pins stay. The contour of their frame stays as it was, with the pins in their places: the rest of another clip's contour would not fit
 //!   those points that were moved
 //! - a centre stays. The new clip's contour is moved there
+//! - where a part was marked as absent, it stays absent
 //!
 //! They also stay on frames that the clip does not reach; the footage then goes on to the last of them.
 //!
 //! Which of a document's keys the artist made, it says itself ([`Document::reshaped`]). A part that has no key but that of the drawing
 //! was not tracked towards other keys, so its pins and centres are corrections of such a result too. The other keys, pins and centres of
-//! a shot are those of the shot's own motion, and would tear another motion apart. The result does not have them; what it then lacks is said.
+//! a shot are those of the shot's own motion, and would tear another motion apart. So is where its parts are absent, unless the part was
+//! reshaped before. The result does not have them; what it then lacks is said.
 
 use super::{PipelineError, wrong};
 use crate::geometry::Point;
 use crate::pipeline::outdated;
-use crate::pipeline::report::runs;
+use crate::pipeline::report::{ranges, runs};
 use crate::pipeline::untracked::named;
 use crate::project::Document;
 use crate::scene::{Footage, FrameNumber, Part};
@@ -49,7 +51,10 @@ impl Corrections {
                 }
             };
             let none = Part { name: part.name.clone(), ..Part::default() };
-            let (stay, go) = if stays { (own, none) } else { (none, own) };
+            let (mut stay, mut go) = if stays { (own, none) } else { (none, own) };
+            if !reshaped.contains_key(&part.name) {
+                go.absent.extend(std::mem::take(&mut stay.absent));
+            }
             kept.push(stay);
             left.push(go);
         }
@@ -86,16 +91,19 @@ impl Corrections {
     }
 
     /// What is said: of what stays, with the last frame of the clip, and of what the result does not have.
-    pub fn said(&self, result: &[Part], last: FrameNumber) -> (Option<String>, Option<String>) {
+    pub fn said(&self, result: &[Part], last: FrameNumber) -> (Option<String>, Vec<String>) {
         let stays = |part: &Part| {
             let frames: Vec<FrameNumber> = frames_of(part).into_iter().collect();
-            (!frames.is_empty()).then(|| format!("{:?} on {}", part.name, runs(&frames)))
+            let corrected = (!frames.is_empty()).then(|| format!("on {}", runs(&frames)));
+            let absent = (!part.absent.is_empty()).then(|| format!("absent on {}", absence(part)));
+            let list: Vec<String> = corrected.into_iter().chain(absent).collect();
+            (!list.is_empty()).then(|| format!("{:?} {}", part.name, list.join(" and ")))
         };
         let list: Vec<String> = self.kept.iter().filter_map(stays).collect();
         let beyond = self.kept.iter().flat_map(frames_of).any(|frame| frame > last);
         let beyond = if beyond { format!("; the clip ends on {last}") } else { String::new() };
         let stay = (!list.is_empty()).then(|| format!("your corrections stay: {}{beyond}", list.join(", ")));
-        (stay, self.said_of_left(result))
+        (stay, self.said_of_left(result).into_iter().chain(self.said_of_absence()).collect())
     }
 
     fn said_of_left(&self, result: &[Part]) -> Option<String> {
@@ -106,6 +114,20 @@ impl Corrections {
         let frames = runs(&frames.into_iter().collect::<Vec<_>>());
         Some(format!("keys and corrections of the drawing's own motion are not in the result: {parts}, on {frames}"))
     }
+
+    fn said_of_absence(&self) -> Option<String> {
+        let absent = |part: &&Part| !part.absent.is_empty();
+        let list: Vec<String> =
+            self.left.iter().filter(absent).map(|part| format!("{:?} on {}", part.name, absence(part))).collect();
+        let list = list.join(", ");
+        (!list.is_empty())
+            .then(|| format!("the result shows parts that are absent in the drawing's own motion: {list}"))
+    }
+}
+
+/// The frames on which a part is absent, as text.
+fn absence(part: &Part) -> String {
+    ranges(part.absent.iter().map(|&[first, last]| (first, last)))
 }
 
 /// The frames on which a part is corrected.
@@ -154,6 +176,17 @@ fn put(part: &mut Part, kept: &Part) {
     part.keys.extend(kept.keys.clone());
     (part.pins, part.centers) = (kept.pins.clone(), kept.centers.clone());
     part.curves.retain(|frame, _| !frames_of(kept).contains(frame));
+    part.absent = kept.absent.clone();
+    without_made_where_absent(part, kept);
+    part.forget_where_absent();
+}
+
+/// Where a part is absent it has no key that was made, as it would be there on a key. The first one stays: the drawing is at rest there.
+fn without_made_where_absent(part: &mut Part, kept: &Part) {
+    let absent = part.absent.clone();
+    let within = |frame: FrameNumber| absent.iter().any(|&[first, last]| (first..=last).contains(&frame));
+    let first = part.keys.first_key_value().map(|(frame, _)| *frame);
+    part.keys.retain(|frame, _| Some(*frame) == first || kept.keys.contains_key(frame) || !within(*frame));
 }
 
 /// A contour whose mean is in its place. Pinned points stay where they are.

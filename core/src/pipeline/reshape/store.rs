@@ -93,4 +93,5 @@ fn set_tracks(part: &mut Part, tracks: BTreeMap<FrameNumber, Vec<Point>>) {
     part.centers.clear();
     part.confidence.clear();
     part.wants_key.clear();
+    part.absent.clear();
 }

@@ -21,10 +21,11 @@ use super::super::stroke::Stroke;
 use super::correspond::Places;
 use super::credible::{self, Half, Lines, Passing};
 use super::join::{Asked, Ends, Run, runs};
-use super::{GivenPegs, Key, Options, Sequence, Spacing};
+use super::{Captured, GivenPegs, Key, Options, Sequence, Spacing};
 use crate::ink;
 use crate::peg::Timing;
 use rototoon_base::geometry::{Point, polygon, polyline};
+use std::sync::Arc;
 
 /// The share of the ink that must meet, by the flow by which most ink meets. Where less meets, the drawings are taken to have nothing
 /// in common: so it is for 180 of 198 pairs of drawings of different films, and for 20 of 249 pairs of one film.
@@ -66,6 +67,14 @@ pub(super) enum Way {
     Flows(Box<Flow>, Run),
     /// No movement can be believed, so the earlier key is held.
     Held,
+}
+
+/// A sequence whose strokes are all carried to their counterparts, and what it was made with beside.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Alternative {
+    sequence: Sequence,
+    pegs: GivenPegs,
+    base: Option<usize>,
 }
 
 /// The way of a span of unsurely matched drawings. `half` is the drawing half way by the matched strokes.
@@ -212,7 +221,27 @@ impl Sequence {
             }
         }
         let flowing = Self::carried(self.keys.clone(), matchings, exchanged, pegs, &self.options, base);
-        Self { ways, matched: Some(Box::new(self)), ..flowing }
+        let matched = Alternative { sequence: self, pegs: pegs.clone(), base };
+        Self { ways, matched: Some(Box::new(matched)), ..flowing }
+    }
+
+    /// Carries strokes to their counterparts in the spans that flow and in which a captured part shows the movement: there a flow need not
+    /// guess it. All other spans stay as they are.
+    pub(super) fn matched_where_seen(self, matched: Alternative, captured: &Arc<[Captured]>) -> Self {
+        let followed = matched.sequence.clone().following(captured.clone()).followed;
+        let seen = |k: usize| followed.iter().any(|spans| spans[k].is_some());
+        let seen: Vec<usize> =
+            (0..self.ways.len()).filter(|&k| matches!(self.ways[k], Way::Flows(..)) && seen(k)).collect();
+        if seen.is_empty() {
+            return self;
+        }
+        let Self { keys, mut matchings, mut exchanged, mut ways, options, .. } = self;
+        for k in seen {
+            matchings[k].clone_from(&matched.sequence.matchings[k]);
+            exchanged[k].clone_from(&matched.sequence.exchanged[k]);
+            ways[k] = Way::Matched;
+        }
+        Self { ways, ..Self::carried(keys, matchings, exchanged, &matched.pegs, &options, matched.base) }
     }
 
     /// The points of a track in a span that flows, and its opacity.
@@ -273,7 +302,6 @@ impl Sequence {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Captured;
     use super::*;
     use crate::flow::tests::{cut, figure, moved};
     use crate::peg::{Peg, PegKey, PegTree};
@@ -337,12 +365,51 @@ mod tests {
     fn footage_that_shows_the_movement_is_followed_instead() {
         let pair = Pair { from: 1, to: 2, reversed: false, start: 0.0, confidence: 1.0, by_hand: true };
         let sequence = moving(vec![pair], &GivenPegs::default());
+        let flows = |last| matches!(sequence.clone().following(vec![captured(last)].into()).ways[..], [Way::Flows(..)]);
+        assert!(flows(3) && !flows(8));
+    }
+
+    /// The figure's first line as a part that was tracked up to a frame.
+    fn captured(last: i32) -> Captured {
         let contour =
             |frame: i32| (frame, figure(0.0)[0].0.iter().map(|p| by(f64::from(frame) / 8.0).apply(*p)).collect());
-        let seen = Captured { closed: true, contours: (0..=8).map(contour).collect() };
-        let unseen = Captured { closed: true, contours: (0..4).map(contour).collect() };
-        let flows = |captured| matches!(sequence.clone().following(vec![captured].into()).ways[..], [Way::Flows(..)]);
-        assert!(flows(unseen) && !flows(seen));
+        Captured { closed: true, contours: (0..=last).map(contour).collect() }
+    }
+
+    #[test]
+    fn footage_of_one_span_changes_no_other_span() {
+        let drawings = [
+            cut(&figure(0.0), 47.0, &Similarity::IDENTITY),
+            cut(&figure(0.0), 31.0, &by(1.0)),
+            cut(&figure(0.0), 41.0, &by(2.0)),
+            (0..12).map(strange).collect(),
+        ];
+        let matchings: Vec<Matching> = drawings
+            .windows(2)
+            .map(|two| Matching {
+                vanished: (0..two[0].len()).collect(),
+                appeared: (0..two[1].len()).collect(),
+                ..Matching::default()
+            })
+            .collect();
+        let key = |(k, strokes)| Key { frame: 8 * k, strokes, ..Key::default() };
+        let keys: Vec<Key> = (0..).zip(drawings).map(key).collect();
+        let pair = Pair { from: 1, to: 2, reversed: false, start: 0.0, confidence: 1.0, by_hand: true };
+        let first = Matching { pairs: vec![pair], ..matchings[0].clone() };
+        let matchings = [&[first], &matchings[1..]].concat();
+        let mut sequence = Sequence::new(keys, &matchings, &GivenPegs::default(), &Options::default()).unwrap();
+        sequence.ways[2] = Way::Held;
+        let ways = |sequence: &Sequence| {
+            let flows = |way: &Way| if matches!(way, Way::Flows(..)) { "flows" } else { "matched" };
+            sequence.ways.iter().map(|way| if *way == Way::Held { "held" } else { flows(way) }).collect::<Vec<_>>()
+        };
+        assert_eq!(ways(&sequence), ["flows", "flows", "held"]);
+        let followed = sequence.clone().following(vec![captured(8)].into());
+        assert_eq!(ways(&followed), ["matched", "flows", "held"]);
+        for frame in [10, 14, 20] {
+            let drawn = |sequence: &Sequence| visible(sequence, frame);
+            assert_eq!(drawn(&followed), drawn(&sequence), "frame {frame}");
+        }
     }
 
     /// A body that stays and an arm that moves. The strokes are paired in such a way that the body goes away.
@@ -417,14 +484,17 @@ mod tests {
         }
     }
 
+    /// A line at random.
+    fn strange(k: u32) -> Stroke {
+        let number = |k: u32| f64::from((k.wrapping_mul(2_654_435_761) >> 8) % 1000) / 5.0;
+        let (at, way) = (Point::new(number(3 * k), number(3 * k + 1)), Point::from_angle(number(3 * k + 2)));
+        Stroke::new((0..12).map(|i| at + way * (4.0 * f64::from(i))).collect(), false)
+    }
+
     #[test]
     fn drawings_that_have_nothing_in_common_do_not_flow() {
-        let number = |k: u32| f64::from((k.wrapping_mul(2_654_435_761) >> 8) % 1000) / 5.0;
-        let line = |k: u32| {
-            let (at, way) = (Point::new(number(3 * k), number(3 * k + 1)), Point::from_angle(number(3 * k + 2)));
-            Stroke::new((0..12).map(|i| at + way * (4.0 * f64::from(i))).collect(), false)
-        };
-        let (first, second): (Vec<Stroke>, Vec<Stroke>) = ((0..12).map(line).collect(), (70..82).map(line).collect());
+        let (first, second): (Vec<Stroke>, Vec<Stroke>) =
+            ((0..12).map(strange).collect(), (70..82).map(strange).collect());
         let (matching, nothing) = (Matching::default(), Half::default());
         let run = moving(Vec::new(), &GivenPegs::default()).progress.remove(0);
         let far = vec![(vec![Point::splat(900.0), Point::splat(990.0)], false)].into();

@@ -179,7 +179,7 @@ pub struct Sequence {
     /// By span: the progress of a flow.
     progress: Vec<Run>,
     /// The same with strokes carried to their counterparts where this one flows.
-    matched: Option<Box<Self>>,
+    matched: Option<Box<flowing::Alternative>>,
     /// By span: the pairs that are carried out.
     matchings: Vec<Matching>,
     /// By span: the strokes of its two keys that are exchanged half way, because their pairs are not carried out.
@@ -301,13 +301,8 @@ impl Sequence {
 
     /// Lets strokes without a given peg follow the captured part on which they are drawn, where there is one.
     pub fn following(mut self, captured: Arc<[Captured]>) -> Self {
-        // Footage shows the movement: a flow need not guess it.
         if let Some(matched) = self.matched.take() {
-            let followed = matched.following(captured.clone());
-            let shown = |k: usize| followed.followed.iter().any(|spans| spans[k].is_some());
-            if (0..self.ways.len()).any(|k| matches!(self.ways[k], Way::Flows(..)) && shown(k)) {
-                return followed;
-            }
+            self = self.matched_where_seen(*matched, &captured);
         }
         let spans: Vec<[FrameNumber; 2]> = self.keys.windows(2).map(|pair| [pair[0].frame, pair[1].frame]).collect();
         let of = |(t, track): (usize, &Track)| -> Vec<Option<Following>> {
