@@ -306,7 +306,7 @@ def write(ob, block: Block, tracks: np.ndarray) -> dict[int, int]:
     made = [
         number
         for number, (handle, kind) in gp.drawings(layer).items()
-        if block.first < number < block.last and ks.is_tweened(handle, kind)
+        if block.first < number < block.last and (ks.is_tweened(handle, kind) or ks.is_emptied(handle, kind))
     ]
     gp.remove_frames(layer, made)
     start = block.frames[0]

@@ -43,6 +43,11 @@ def is_tweened(handle, kind: str) -> bool:
     return bool(len(made) and made.all())
 
 
+def is_emptied(handle, kind: str) -> bool:
+    """Whether a drawing is a generated one without strokes. It bears no mark, so only records tell what it was."""
+    return kind == gp.GENERATED and len(gp.offsets(handle)) < 2
+
+
 def _has_tweened(handle) -> bool:
     return bool(gp.has(handle, gp.TWEENED) and gp.value(handle, gp.TWEENED, len(gp.offsets(handle)) - 1).any())
 
@@ -50,9 +55,12 @@ def _has_tweened(handle) -> bool:
 def frames_of(layer, record: records.Layer) -> Frames:
     """Sorts the frames of a layer into keys and in-betweens."""
     found, slots = Frames([], []), marks.Slots(layer.id_data)
-    drawn = {number for span in record.spans.values() for number in span.sums}
+    drawn = {number: total for span in record.spans.values() for number, total in span.sums.items()}
     with gp.copied(layer.id_data) as data:
         for number, (handle, kind) in gp.drawings(gp.find_layer_of(data, layer.name)).items():
+            if is_emptied(handle, kind) and drawn.get(number) == records.EMPTY:
+                found.made.append(number)
+                continue
             if not is_tweened(handle, kind):
                 found.keys.append(number)
                 if kind == gp.GENERATED and (number in drawn or _has_tweened(handle)):

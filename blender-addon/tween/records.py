@@ -23,6 +23,8 @@ from ..blender import grease_pencil as gp
 from .charts import Choices
 
 PROPERTY = "rototoon_tween"
+EMPTY = zlib.crc32(b"")
+"""Checksum of a drawing without points: of an in-between whose lines are all hidden."""
 
 
 @dataclass

@@ -65,13 +65,21 @@ def kept(ob) -> Iterator[Kept]:
         layer = gp.find_layer(ob, name)
         if layer is None:
             continue
-        marks.note(ob.data, name, frames | _new_in_betweens(layer, known[name], there[name]))
+        frames = frames | _new_in_betweens(layer, known[name], there[name])
+        marks.note(ob.data, name, frames)
         drawings = gp.drawings(layer)
         for span in known[name].spans.values():
             for frame in frames & span.sums.keys() & drawings.keys():
                 handle = drawings[frame][0]
                 span.sums[frame] = records.checksum(gp.positions(handle, int(gp.offsets(handle)[-1])))
+        _note_emptied(known[name], {frame for frame in frames if frame in drawings and ks.is_emptied(*drawings[frame])})
     records.write(ob.data, known)
+
+
+def _note_emptied(record: records.Layer, frames: set[int]) -> None:
+    """Notes in-betweens without strokes, which can bear no mark."""
+    for first, span in record.spans.items():
+        span.sums |= {frame: records.EMPTY for frame in frames if first < frame < span.last}
 
 
 def _new_in_betweens(layer, record: records.Layer, there: set[int]) -> set[int]:

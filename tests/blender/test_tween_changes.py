@@ -133,6 +133,28 @@ def test_a_cut_copy_that_the_artist_changes_is_a_key(addon, on_twos):
     assert frames(addon, on_twos)[2] == "BREAKDOWN"
 
 
+@pytest.mark.parametrize("step", [1, 2])
+def test_in_betweens_that_are_hidden_whole_stay_in_betweens(addon, step):
+    ob = keyed(addon)
+    bpy.ops.rototoon.in_between(spacing="LINEAR", step=step)
+    ob.data.layers.new("Cover")
+    for frame, size in ((1, 0.1), (4, 20.0), (7, 0.1)):
+        add(addon, ob, "Cover", frame, [circle((2.0, 1.0), size)], cyclic=True)
+    drawn = list(frames(addon, ob))
+    without_hidden(addon, ob)
+    assert not len(content(addon, ob, "Lines", 4).sizes) and not len(content(addon, ob, "Lines", 5).sizes)
+    found = addon("tween.keys").frames_of(ob.data.layers["Lines"], addon("tween.records").read(ob.data)["Lines"])
+    assert found.keys == [1, 9] and not found.edited
+    ob.data.layers["Cover"].hide = True
+    move(addon, ob, 9, by=0.4)
+    bpy.ops.rototoon.update_in_betweens()
+    assert "you had changed" not in said(addon).text and list(frames(addon, ob)) == drawn
+    assert all(len(content(addon, ob, "Lines", frame).sizes) for frame in drawn)
+    handle(addon, ob, 5).remove_strokes()
+    bpy.ops.rototoon.update_in_betweens()
+    assert "that you had changed is a key now: frame 5" in said(addon).text
+
+
 def test_own_keys_that_are_cut_are_a_warning_with_their_frames(addon):
     ob = covered(addon)
     without_hidden(addon, ob)
