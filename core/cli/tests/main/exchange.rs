@@ -177,7 +177,7 @@ fn a_file_for_each_frame_lies_on_its_own_frame_and_may_be_empty() {
     let (captured, out) = (folder.captured(), folder.path("o.json"));
     let file = |frame: i32| folder.path(&format!("f_{frame:04}.svg"));
     let pattern = folder.path("f_%04d.svg");
-    let export = ["export", text(&captured), "-o", text(&pattern), "--part", "triangle"];
+    let export = ["export", text(&captured), "-o", text(&pattern), "--parts", "triangle"];
     run(&export, 0);
     let (empty, third) = (fs::read_to_string(file(0)).unwrap(), fs::read_to_string(file(3)).unwrap());
     assert!(!empty.contains("<path") && third.contains("<path"), "the triangle is there from frame 2 on");
@@ -205,7 +205,7 @@ fn a_range_with_a_part_that_comes_within_it_changes_no_other_frame() {
     let folder = Folder::new();
     let (captured, out) = (folder.captured(), folder.path("o.json"));
     let mut document: Value = serde_json::from_str(&fs::read_to_string(&captured).unwrap()).unwrap();
-    let part = &mut document["parts"][0];
+    let part = &mut document["parts"][1];
     part["keys"]["2"] = part["tracks"]["2"].clone();
     part["absent"] = json!([[3, 4]]);
     for frame in ["3", "4"] {
@@ -214,11 +214,11 @@ fn a_range_with_a_part_that_comes_within_it_changes_no_other_frame() {
     fs::write(&captured, document.to_string()).unwrap();
     for extension in ["nk", "ntp", "fxs", "setting", "svg"] {
         let shapes = folder.path(&format!("a.{extension}"));
-        run(&["export", text(&captured), "-o", text(&shapes), "--frames", "4-5", "--part", "triangle"], 0);
+        run(&["export", text(&captured), "-o", text(&shapes), "--frames", "4-5", "--parts", "triangle"], 0);
         let said = run(&["import", text(&captured), text(&shapes), "-o", text(&out)], 0);
         assert!(said.contains("as before \"triangle\""), "{extension}: {said}");
         let after: Value = serde_json::from_str(&fs::read_to_string(&out).unwrap()).unwrap();
-        assert_eq!(after["parts"][0]["absent"], json!([[3, 4]]), "{extension}");
+        assert_eq!(after["parts"][1]["absent"], json!([[3, 4]]), "{extension}");
         assert_eq!(parts(&out)[0].2, parts(&captured)[0].2, "{extension}");
     }
 }

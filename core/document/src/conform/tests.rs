@@ -169,10 +169,10 @@ fn what_is_marked_of_limbs_is_named_where_its_drawing_is_gone() {
     let limbs = r#"[{"from": "r_shoulder", "to": "r_elbow",
         "start": {"points": [{"part": "arm", "at": 0}, {"part": "arm", "drawn": {"2": [5, 3]}}]},
         "end": {"points": [{"part": "arm", "drawn": {"1": [5, 3], "2": [9, 9]}}, {"part": "arm", "at": 1}]}, "bends": {"2": [5, 5]}}]"#;
-    old.set_other_field("limbs", serde_json::from_str(limbs).unwrap());
-    old.set_other_field("limb_swaps", serde_json::from_str("[[2, 2], [1, 3]]").unwrap());
+    old.set_other_field("limbs", limbs.into());
+    old.set_other_field("limb_swaps", "[[2, 2], [1, 3]]".into());
     let marks = r#"[{"front": "arm", "behind": "arm", "first": 2, "last": 2}]"#;
-    old.set_other_field("depth_marks", serde_json::from_str(marks).unwrap());
+    old.set_other_field("depth_marks", marks.into());
     let sources = [(1001, Same(1)), (1002, Same(3)), (1003, Same(4)), (1004, Same(5))];
     let frames = FrameMap::new(1..=6, sources.into_iter().collect(), vec![[3, 4]]);
     let footage = Footage {
