@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import shots
 from conftest import ROOT
+from live_stage import settle
 from mathutils import Matrix
 
 VERSIONS = ["4.5.15", "5.0.1", "5.2.3"]
@@ -69,11 +70,14 @@ def test_live_waits_for_the_scene_of_its_object(addon, fake, tmp_path):
     live = addon("capture.live")
     ob = shots.two_keys(addon, tmp_path)
     ob.rototoon.live = True
+    home = bpy.context.window.scene
     bpy.context.window.scene = bpy.data.scenes.new("Second")
     try:
-        while live.step(float("inf")) is not None:
-            pass
+        assert {live.step(float("inf")) for _ in range(20)} == {live.BLOCKED}
         assert len(shots.layer_of(ob).frames) == 2
+        bpy.context.window.scene = home
+        settle(live)
+        assert len(shots.layer_of(ob).frames) == shots.COUNT
     finally:
         live.reset()
 
