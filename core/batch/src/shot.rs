@@ -15,7 +15,6 @@ use rototoon::pipeline;
 use rototoon::project::place::folder_of;
 use rototoon::project::{Document, WriteError};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
@@ -414,6 +413,7 @@ fn absolute(path: &Path) -> PathBuf {
 mod tests {
     use super::*;
     use serde_json::json;
+    use std::fs;
     use std::sync::atomic::{AtomicBool, Ordering};
 
     #[test]

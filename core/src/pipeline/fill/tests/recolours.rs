@@ -70,6 +70,11 @@ fn up_to_a_drawing_and_on_a_range() {
         assert_eq!(found, wets);
         assert!(coats.iter().all(|(name, number)| (name == "wet") == (*number == 2)), "{coats:?}");
         assert_eq!(lamps, of([("lamp", 1); 5]));
+        // One frame once more: the numbers are those of before.
+        let before = film.document.to_json();
+        let options = FillOptions::default();
+        fill(&mut film.document, film.folder.path(), Some(1..=1), &options, None, &Silent).unwrap();
+        assert_eq!(film.document.to_json(), before);
     }
 }
 
