@@ -5,7 +5,6 @@
 
 use super::fetching::{Clerk, HostFrames};
 use super::film::{Kept, Terms};
-use super::spans::Span;
 use crate::description::SOURCE;
 use crate::ofx::progress::Bar;
 use crate::ofx::{Clip, Effect, Failure};
@@ -55,7 +54,7 @@ pub struct Tracked {
 
 impl Tracked {
     /// Whether all frames of a span were tracked. The source may have fewer frames than the document.
-    pub fn has(&self, [first, last]: &Span) -> bool {
+    pub fn has(&self, [first, last]: &[FrameNumber; 2]) -> bool {
         !self.is_limited || self.range.contains(first) && self.range.contains(last)
     }
 }

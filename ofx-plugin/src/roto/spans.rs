@@ -8,12 +8,9 @@
 //! stay old until a complete Track.
 
 use super::job::Tracked;
-use super::state::State;
+use super::state::{Span, State};
 use rototoon::scene::{Footage, FrameNumber, Part};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// First and last frame of a span.
-pub type Span = [FrameNumber; 2];
 
 /// What stands for the sum of a part's input where only some of its spans have ever been tracked.
 const SOME_SPANS: &str = "some spans";

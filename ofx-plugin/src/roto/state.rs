@@ -6,10 +6,9 @@
 //!
 //! The text is JSON with a version, encoded as the document is ([`super::stored`]).
 
-use super::spans::Span;
 use super::stored;
 use rototoon::render::composite::Blend;
-use rototoon::scene::{Falloff, FalloffCurve, Part};
+use rototoon::scene::{Falloff, FalloffCurve, FrameNumber, Part};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -22,6 +21,9 @@ pub const MOST_FRAMES: i32 = 100_000;
 const OTHER_ORDER: &str = "other order";
 /// What stands for it where they were made from a source that has changed since.
 const OTHER_SOURCE: &str = "other source";
+
+/// First and last frame of a span.
+pub type Span = [FrameNumber; 2];
 
 /// A number that may have keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
