@@ -12,13 +12,13 @@ pytestmark = pytest.mark.usefixtures("library")
 def crossing(addon, carried=True):
     """Two limbs of the same shape that change places between the keys 1 and 5. With `carried`, their numbers are those of tracing."""
     ob = drawing_object(addon)
-    gp, drawings = addon("blender.grease_pencil"), addon("lines.drawings")
+    gp, drawings, marks = addon("blender.grease_pencil"), addon("lines.drawings"), addon("blender.marks")
     for frame, numbers in ((1, [1, 2]), (5, [2, 1])):
         handle = add(addon, ob, "Lines", frame, [limb(0, 0, 0.5), limb(4, 0, 0.5)])
         gp.put(handle, gp.TRACK, np.array(numbers, np.int32))
         if carried:
             found = content(addon, ob, "Lines", frame)
-            drawings.mark(found)
+            drawings.mark(found, marks.Slots(ob.data))
             gp.put(handle, gp.LINE, found.point[gp.LINE])
     bpy.context.scene.frame_set(1)
     return ob

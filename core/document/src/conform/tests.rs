@@ -193,6 +193,6 @@ fn what_is_marked_of_limbs_is_named_where_its_drawing_is_gone() {
     assert_eq!(gone.len(), 5, "{notes:?}");
     let json = json(&new);
     assert_eq!(json["limbs"][0]["start"]["points"][1], serde_json::json!({"part": "arm", "at": 0.25}));
-    assert_eq!(json["limbs"][0]["end"]["points"][0]["drawn"], serde_json::json!({"1001": [5.0, 3.0]}));
+    assert_eq!(json["limbs"][0]["end"]["points"][0]["drawn"], serde_json::json!({"1001": [5, 3]}));
     assert_eq!((&json["limb_swaps"], json.get("depth_marks")), (&serde_json::json!([[1001, 1002]]), None));
 }
