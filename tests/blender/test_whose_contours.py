@@ -5,6 +5,9 @@ import numpy as np
 import pytest
 import shots
 
+# Blender 5.0 ends in its own operator, in an empty file too.
+duplicates = pytest.mark.skipif(bpy.app.version[:2] == (5, 0), reason="Duplicate ends Blender 5.0 in background")
+
 
 def octagon(frame):
     corners = shots.square(frame)
@@ -55,6 +58,7 @@ def last_moved(addon, ob, frame, shift):
     gp.put(handle, "position", points)
 
 
+@duplicates
 def test_a_tracked_contour_that_is_duplicated_is_the_artists(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
@@ -68,6 +72,7 @@ def test_a_tracked_contour_that_is_duplicated_is_the_artists(addon, fake, tmp_pa
     assert now[3] == pytest.approx(tracked + (60.0, -20.0), abs=1e-3) and now[2] == pytest.approx(tracked, abs=1e-3)
 
 
+@duplicates
 def test_a_duplicate_in_its_place_is_no_part(addon, fake, tmp_path):
     ob = shots.two_keys(addon, tmp_path)
     bpy.ops.rototoon.track()
