@@ -92,22 +92,30 @@ def make(ob, name: str, first: int, last: int) -> Plan:
         plan.palette.add_materials(ob, [entry.new for entry in recolours.entries(ob).values()])
     plan.edges = recolours.edges(ob)
     if (first, last) != (low, high):
-        # The library does not give the numbers of other frames to regions of another colour.
-        outside = {frame: sheet for frame, sheet in drawn.items() if not first <= frame <= last}
-        plan.document["filled"] = _kept(ob, outside, offset)
+        # The library gives regions the numbers that they have on other frames, and no other region gets one of these.
+        plan.document["filled"] = _known(ob, plan.mapper, {frame: sheet for frame, sheet in drawn.items() if low <= frame <= high}, offset)
     return plan
 
 
-def _kept(ob, drawn: dict[int, sheets.Sheet], offset: int) -> list[dict[str, Any]]:
-    """The numbers and colours on frames that stay as they are."""
+def _known(ob, mapper: Mapper, drawn: dict[int, sheets.Sheet], offset: int) -> list[dict[str, Any]]:
+    """The regions that frames have, with their numbers and colours."""
     palette, found = colours.palette(ob), []
     for frame, sheet in sorted(drawn.items()):
-        seen = colours.of_strokes(ob, sheet.content, palette).clip(0, 1).round(6).tolist()
-        bare = fill_materials.are_bare(ob, sheet.content)
-        names = fill_materials.names_of_strokes(ob, sheet.content)
-        rows = zip(sheet.content.strokes(gp.TRACK).tolist(), seen, names, bare)
-        numbers = {number: {"colour": colour} | ({"name": name} if name else {}) for number, colour, name, no in rows if not no}
-        regions = [{"outline": [], "track": number - 1, **own} for number, own in numbers.items() if number > 0]
+        content = sheet.content
+        seen = colours.of_strokes(ob, content, palette).clip(0, 1).round(6).tolist()
+        names, numbers = fill_materials.names_of_strokes(ob, content), content.strokes(gp.TRACK).tolist()
+        painted_ones = np.flatnonzero((content.strokes(gp.TRACK) > 0) & ~fill_materials.are_bare(ob, content))
+        outlines = {}
+        for shape in sheets.shapes_of(ob, content, mapper.at(0, frame), painted_ones):
+            loops = sheets.loops_of(shape)
+            outlines[shape.strokes[0]] = loops[0].tolist() if loops else []
+        rest = set(numbers[i] for i in painted_ones) - {numbers[i] for i in outlines}
+        # A shape that cannot be read has a number all the same.
+        outlines |= {i: [] for i in painted_ones.tolist() if numbers[i] in rest}
+        regions = [
+            {"outline": outline, "track": numbers[i] - 1, "colour": seen[i]} | ({"name": names[i]} if names[i] else {})
+            for i, outline in sorted(outlines.items())
+        ]
         found.append({"frame": frame - offset, "regions": regions})
     return found
 
