@@ -5,6 +5,7 @@ use crate::asked::Asked;
 use crate::status::Failure;
 use crate::strokes::Strokes;
 use crate::work::{GoOn, run};
+use rototoon::memory;
 use rototoon::pipeline::spans::{Drawn, DrawnSpan, Sheet, Wanted};
 use rototoon::pipeline::{PipelineError, pegs_of, spacing_of};
 use rototoon::scene::Progress;
@@ -104,6 +105,14 @@ impl Drawings<'_> {
             }
         }
         Ok(self.drawings.windows(2).map(|pair| pair[0] as usize..pair[1] as usize).collect())
+    }
+
+    /// How many points the requested in-betweens have, or a few more.
+    fn points_between(&self, asked: &Asked, ranges: &[Range<usize>]) -> u64 {
+        let offsets = self.strokes.offsets;
+        let of_drawing = |d: usize| ranges.get(d).map_or(0, |own| offsets[own.end].abs_diff(offsets[own.start]));
+        let of_pair = |key: usize| u64::from(of_drawing(key).max(of_drawing(key.saturating_add(1))));
+        asked.spans.iter().map(|span| span.frames.len() as u64 * of_pair(span.key)).sum()
     }
 
     fn stroke(&self, i: usize) -> Stroke {
@@ -218,6 +227,7 @@ pub fn in_betweens(
     go_on: GoOn<'_>,
 ) -> Result<(RototoonInBetweens, RototoonMatches), Failure> {
     let (ranges, asked) = (drawings.checked()?, Asked::parse(options)?);
+    room(drawings.points_between(&asked, &ranges))?;
     let sheet = drawings.sheet(&asked, &ranges)?;
     let wanted: Vec<Wanted> = asked.spans.iter().map(|s| Wanted { key: s.key, frames: s.frames.clone() }).collect();
     let work =
@@ -231,6 +241,15 @@ pub fn in_betweens(
         result.push(span, drawings, &ranges);
     }
     Ok((result, RototoonMatches::new(&found, &ranges)))
+}
+
+/// Asks for the memory of so many points of in-betweens: a failed allocation would end the host.
+fn room(points: u64) -> Result<(), Failure> {
+    /// Bytes of a point here, in Python and in the host's drawings.
+    const POINT: u64 = 64;
+    memory::ask(points.saturating_mul(POINT)).map_err(|error| {
+        Failure::Error(format!("spans: found {points} points of in-betweens: {error}: ask for fewer frames at a time"))
+    })
 }
 
 /// Reports a part of the work as progress of all of it.
@@ -378,6 +397,17 @@ mod tests {
         assert_eq!(found.points.len(), 3 * 8 * 2);
         assert!((found.points[16] - 4.0).abs() < 1e-6, "{:?}", &found.points[16..22]);
         assert_eq!(found.opacities.len(), 9);
+    }
+
+    #[test]
+    fn too_many_points_are_refused_before_the_work() {
+        let asked = Asked::parse(r#"{"spans": [{"key": 0, "frames": [2, 3, 4]}, {"key": 9, "frames": [7]}]}"#).unwrap();
+        let drawings = drawings(&[]);
+        // The later drawing has more points: two, two and three.
+        assert_eq!(drawings.points_between(&asked, &drawings.checked().unwrap()), 3 * 7);
+        assert!(room(1000).is_ok());
+        let said = room(1 << 57).unwrap_err().to_string();
+        assert!(said.contains("points of in-betweens") && said.contains("of memory are needed"), "{said}");
     }
 
     #[test]
