@@ -51,7 +51,7 @@ pub fn take_lengths(postures: &mut [Posture], own: &[Posture]) {
     }
 }
 
-/// The range of each limb's lengths in postures; `None` without any.
+/// The range of each limb's lengths in postures; `None` without any. Places too far apart for a number have no length: a limb without one may have any.
 fn ranges(own: &[Posture]) -> Option<[(f64, f64); LIMBS]> {
     let mut range = [(f64::INFINITY, 0.0f64); LIMBS];
     for posture in own {
@@ -59,7 +59,8 @@ fn ranges(own: &[Posture]) -> Option<[(f64, f64); LIMBS]> {
             *range = (range.0.min(length), range.1.max(length));
         }
     }
-    (!own.is_empty()).then_some(range)
+    let any = |range: (f64, f64)| if range.0 <= range.1 { range } else { (0.0, f64::INFINITY) };
+    (!own.is_empty()).then_some(range.map(any))
 }
 
 /// One Gauss–Newton step towards limbs within their ranges.
