@@ -226,8 +226,10 @@ impl Session {
                 TrackError::Cancelled(_) => Failure::Cancelled,
                 other => Failure::error(other),
             })
-        })?;
+        });
+        // Cancelled work keeps the pictures that it has read, and they are not read again.
         self.looked = noted.seen();
+        let tracking = tracking?;
         pipeline::store_seen(&mut self.document, &tracking, self.looked.clone()).map_err(Failure::error)?;
         Ok(summary(&self.document.scene, &tracking, footage_changed))
     }
