@@ -111,6 +111,8 @@ def test_tracks_have_the_marks_of_their_pictures(document, folder, tmp_path, mon
     for frame in FRAMES:
         write_png(tmp_path / f"frame_{frame:03}.png", draw(frame))
     with Session.from_document(document, tmp_path) as session:
+        with pytest.raises(Cancelled):
+            session.track(progress=lambda done, _: done < 0.5)
         session.track()
         seen = session.document()["seen"]["tracks"]
         tracked = {frame for part in session.document()["parts"] for frame in part["tracks"]}
