@@ -3,6 +3,7 @@
 mod beside;
 mod kept;
 mod on_keys;
+mod own;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -52,7 +53,8 @@ pub struct TraceOptions {
 /// are bound to it and to the drawing. So an edit of one traced drawing costs the lines before it nothing. An earlier run is known by its
 /// strokes in the field `traced`, which are all sure there, or by the [options](TraceOptions::keep_first).
 ///
-/// Frames that hold a drawing have its strokes to the last digit, unless the artist drew there.
+/// Frames that hold a drawing have its strokes to the last digit, unless the artist drew there. A drawing without strokes is one, too: the frame
+/// stays empty, and so do those that hold it.
 ///
 /// Frames outside of `range` stay as they are. The nearest of them before and behind that have a drawing or traced strokes count as
 /// drawings: the strokes within have their numbers, as if all frames were traced at once. New strokes have numbers that no frame
@@ -75,12 +77,12 @@ pub fn trace(
     let footage = &document.scene.footage;
     let range = frames_of(footage, range)?;
     super::memory::to_trace(footage)?;
-    let drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
+    let all_drawn = document.drawings().map_err(|error| wrong(&error))?.drawings;
     let earlier = document.traced().map_err(|error| wrong(&error))?;
     let sequence = frames(document, folder)?;
     gaps::none(&sequence, range.clone())?;
-    let beside = beside(&drawn, &earlier, &range);
-    let drawn: Vec<&Drawn> = drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
+    let beside = beside(&all_drawn, &earlier, &range);
+    let drawn: Vec<&Drawn> = all_drawn.iter().filter(|d| range.contains(&d.frame) && !d.strokes.is_empty()).collect();
     let used = earlier.iter().filter(|d| !range.contains(&d.frame)).flat_map(|d| &d.strokes).map(|s| s.track + 1).max();
     let search = Stretch { progress, step: "Tracing", from: 0.0, to: SHARE };
     let noted = Noted::new(&sequence);
@@ -101,6 +103,8 @@ pub fn trace(
     };
     let mut found = tracing.all(&range, &beside)?;
     let earlier_run = tracing.earlier;
+    own::numbered(&mut found, &all_drawn, &earlier, used.unwrap_or(0));
+    own::emptied(&mut found, &all_drawn, &holds);
     found.extend(earlier.into_iter().filter(|drawing| !range.contains(&drawing.frame)));
     found.sort_by_key(|drawing| drawing.frame);
     document.set_seen(Made::Traced, range, &noted.seen()).map_err(|error| wrong(&error))?;
