@@ -86,7 +86,7 @@ pub mod validate;
 pub use fields::{FieldError, described};
 pub use inputs::{Inputs, OverwritesInput, is_same_file};
 pub use load::LoadError;
-pub use output::{WriteError, write_unflushed, write_whole};
+pub use output::{WriteError, write_unflushed, write_whole, write_whole_unless};
 pub use problem::{Problem, Problems, Severity};
 pub use save::SaveError;
 

@@ -12,11 +12,12 @@
 use crate::path::{real, slashed};
 use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// First letters of the names of temporary files.
 const PREFIX: &str = ".rototoon-";
@@ -29,6 +30,9 @@ const MOST_LETTERS: usize = 255;
 
 /// Age after which a temporary file is left over from a process that was killed. No write takes that long.
 const LEFT_OVER: Duration = Duration::from_secs(3600);
+
+/// How long a process waits for others that look at a file of the folder and write it. That takes them far less.
+const ALONE: Duration = Duration::from_secs(2);
 
 /// A file could not be written. An earlier file is unchanged.
 #[derive(Debug, thiserror::Error)]
@@ -46,7 +50,17 @@ pub struct WriteError {
 ///
 /// A [`WriteError`].
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write(path, bytes, true).map_err(|source| WriteError { path: path.to_owned(), source })
+    write_whole_unless(path, bytes, &|| false).map(drop)
+}
+
+/// As [`write_whole`], unless the file `is_changed` when the bytes are on the disk, directly before the file gets its name. Returns whether it was
+/// written. Of several processes that write files of a folder in this way, one after the other looks and writes, where the disk knows locks.
+///
+/// # Errors
+///
+/// A [`WriteError`].
+pub fn write_whole_unless(path: &Path, bytes: &[u8], is_changed: &dyn Fn() -> bool) -> Result<bool, WriteError> {
+    write(path, bytes, true, is_changed).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
 /// As [`write_whole`], for a file whose loss costs time alone: nothing waits for the disk. After a crash of the system the file may have other bytes, so
@@ -56,14 +70,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
 ///
 /// A [`WriteError`].
 pub fn write_unflushed(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
-    write(path, bytes, false).map_err(|source| WriteError { path: path.to_owned(), source })
+    write(path, bytes, false, &|| false).map(drop).map_err(|source| WriteError { path: path.to_owned(), source })
 }
 
-fn write(path: &Path, bytes: &[u8], flush: bool) -> io::Result<()> {
+fn write(path: &Path, bytes: &[u8], flush: bool, is_changed: &dyn Fn() -> bool) -> io::Result<bool> {
     let existing = fs::metadata(path).ok();
     match &existing {
         Some(data) if data.is_dir() => return Err(io::Error::other("it is a folder, expected a file")),
-        Some(data) if !data.is_file() => return OpenOptions::new().write(true).open(path)?.write_all(bytes),
+        Some(data) if !data.is_file() => {
+            return OpenOptions::new().write(true).open(path)?.write_all(bytes).map(|()| true);
+        }
         _ => {}
     }
     let target = if existing.is_some() { real(path)? } else { resolved(&end_of_links(path)?)? };
@@ -80,7 +96,7 @@ fn write(path: &Path, bytes: &[u8], flush: bool) -> io::Result<()> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666)); // reduced by the user's mask, as for any new file
     }
-    let file = Unfinished::new(&builder, folder)?;
+    let file = Unfinished::new(&builder, folder).map_err(nameless)?;
     file.as_file().write_all(bytes)?;
     if let Some(data) = existing {
         file.as_file().set_permissions(data.permissions())?;
@@ -88,13 +104,41 @@ fn write(path: &Path, bytes: &[u8], flush: bool) -> io::Result<()> {
     if flush {
         file.as_file().sync_all()?;
     }
-    file.persist(&target)?;
+    {
+        let _alone = flush.then(|| alone(folder)).flatten();
+        if is_changed() {
+            return Ok(false);
+        }
+        file.persist(&target)?;
+    }
     // The new name is on the disk only after the folder is flushed. On systems that cannot open folders, the system
     // does this.
     if let Some(folder) = flush.then(|| File::open(folder).ok()).flatten() {
         let _ = folder.sync_all();
     }
-    Ok(())
+    Ok(true)
+}
+
+/// A lock of the folder for as long as it is kept. `None` where folders cannot be locked, or another process keeps the lock for too long.
+fn alone(folder: &Path) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    let start = Instant::now();
+    loop {
+        match folder.try_lock() {
+            Ok(()) => return Some(folder),
+            Err(TryLockError::WouldBlock) if start.elapsed() < ALONE => sleep(Duration::from_millis(1)),
+            Err(_) => return None,
+        }
+    }
+}
+
+/// The error of the system without the name of the temporary file, which nobody knows.
+fn nameless(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|inner| inner.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
+    match inner.and_then(io::Error::raw_os_error) {
+        Some(code) => io::Error::from_raw_os_error(code),
+        None => error,
+    }
 }
 
 /// Checks, as far as possible, whether a file can be written at `path`, so that long work fails before it starts.
@@ -239,6 +283,29 @@ mod tests {
         write_whole(&path, b"two").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"two");
         assert_eq!(names(folder.path()), ["a.json"]);
+    }
+
+    #[test]
+    fn of_many_that_look_and_write_at_once_each_sees_what_the_others_wrote() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_whole(&path, b"0").unwrap();
+        // Each adds one to the number of the file, and tries again if somebody else was faster.
+        let add = || {
+            for _ in 0..10 {
+                loop {
+                    let read = fs::read_to_string(&path).unwrap();
+                    let next = (read.parse::<u32>().unwrap() + 1).to_string();
+                    let is_changed = || fs::read_to_string(&path).unwrap() != read;
+                    if write_whole_unless(&path, next.as_bytes(), &is_changed).unwrap() {
+                        break;
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| (0..4).for_each(|_| drop(scope.spawn(add))));
+        assert_eq!(fs::read(&path).unwrap(), b"40");
+        assert_eq!(names(folder.path()), ["a.txt"]);
     }
 
     #[test]

@@ -8,11 +8,14 @@
 //! The command line and the C ABI keep a [`Known`] of what they read and wrote. A host that keeps documents itself, such as Blender or a compositor, keeps
 //! marks as text in its own file, and calls [`replace`].
 //!
-//! Limits: between the last look and the writing another program may still write, within milliseconds. Pipes and devices are not compared. A file that nobody
+//! The last look comes when the result is on the disk and has only to get its name. Programs of Rototoon on one machine do that one after the other, so none of
+//! them misses what another one wrote.
+//!
+//! Limits: another program may still write between that look and the new name. So may Rototoon on another machine, or where the disk knows no locks. Pipes and devices are not compared. A file that nobody
 //! read here is replaced: the user chose its name.
 
 use crate::project::path::real;
-use crate::project::{Document, SaveError, WriteError, write_whole};
+use crate::project::{Document, SaveError, WriteError, write_whole, write_whole_unless};
 use blake3::Hash;
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -112,8 +115,7 @@ pub fn replace(path: &Path, text: &str, read: &[Mark]) -> Result<Mark, ReplaceEr
     let result = Mark::of_bytes(text.as_bytes());
     // Where another program wrote the same result, nothing would be lost.
     let is_changed = || is_file(path) && Mark::of(path).is_none_or(|found| found != result && !read.contains(&found));
-    if read.is_empty() || !is_changed() {
-        write_whole(path, text.as_bytes())?;
+    if write_whole_unless(path, text.as_bytes(), &|| !read.is_empty() && is_changed())? {
         return Ok(result);
     }
     let beside = beside(path)?;
