@@ -103,10 +103,9 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     for note in &conformed.notes {
         line("warning", &format!("{}: {note}", from.display()));
     }
-    if let Some(path) = report {
-        write_whole(path, format!("{:#}\n", conformed.report()).as_bytes())?;
-    }
-    save(conformed.document, to)
+    let told = format!("{:#}\n", conformed.report());
+    save(conformed.document, to)?;
+    report.map_or(Ok(()), |path| Ok(write_whole(path, told.as_bytes())?))
 }
 
 /// An error, and for frames that cannot be read the way without them.

@@ -66,15 +66,25 @@ pub fn conform(
     let old = &document.scene.footage;
     let footage = footage(new, old)?;
     let conform = match new.offset {
-        Some(by) => Conform {
-            placement: placement(&new.given, old, &footage),
-            frames: FrameMap::offset(old.first..=old.last, footage.first..=footage.last, by),
-        },
+        Some(by) => Conform { placement: placement(&new.given, old, &footage), frames: moved(old, &footage, by)? },
         None => compared(document, folder, &footage, new, progress)?,
     };
     let failed = |error: crate::project::FieldError| PipelineError::Field(error.to_string());
     let (document, notes) = document.conformed(&conform, footage).map_err(failed)?;
     Ok(Conformed { document, conform, notes, offset: new.offset })
+}
+
+/// The frames by their numbers alone.
+fn moved(old: &Footage, new: &Footage, by: FrameNumber) -> Result<FrameMap, PipelineError> {
+    let map = FrameMap::offset(old.first..=old.last, new.first..=new.last, by);
+    // A slip of sign would leave nothing of the artist's work.
+    if map.sources().values().all(|source| matches!(source, Source::New)) {
+        return Err(PipelineError::Request(format!(
+            "frame offset {by}: none of the old frames, {} to {}, is among the new ones, {} to {}",
+            old.first, old.last, new.first, new.last
+        )));
+    }
+    Ok(map)
 }
 
 /// The new footage: its files say the frames and the size.

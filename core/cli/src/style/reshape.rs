@@ -87,12 +87,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let clips = load(arguments::path(given, "clips"), |character, motion| is_asked(given, character, motion))?;
     let clip = chosen(&clips, arguments::path(given, "clips"), given)?;
     let inputs = project::inputs(&document, from).clips(arguments::path(given, "clips"));
-    let inputs = given.get_one::<PathBuf>("over").into_iter().fold(inputs, |inputs, path| inputs.file(path));
+    let over =
+        given.get_one::<PathBuf>("over").map(|path| Ok::<_, Failure>((path, Document::load(path)?))).transpose()?;
+    let inputs = over.iter().fold(inputs, |inputs, (path, other)| {
+        inputs.file(path).footage(&other.scene.footage, &project::home(other, path))
+    });
     inputs.check(to)?;
     check_writable(to)?;
-    let over = match given.get_one::<PathBuf>("over") {
-        Some(path) => {
-            let mut other = Document::load(path)?;
+    let over = match over {
+        Some((path, mut other)) => {
             let (home, own) = (project::home(&other, path), project::home(&document, from));
             pipeline::relocate(&mut other, &home, &own);
             Some(other.scene.footage)

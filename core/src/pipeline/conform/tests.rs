@@ -100,6 +100,11 @@ fn an_offset_needs_no_old_pictures() {
         "not in the new footage, by the old numbers: 1",
     ];
     assert_eq!(told, expected);
+    // The other sign leaves nothing.
+    let asked = NewFootage { offset: Some(-100), ..new(folder.path()) };
+    let error = conform(&document(), folder.path(), &asked, &Silent).unwrap_err();
+    let told = "frame offset -100: none of the old frames, 1 to 6, is among the new ones, 101 to 106";
+    assert_eq!(error.to_string(), told);
     let error = conform(&document(), folder.path(), &new(folder.path()), &Silent).unwrap_err();
     assert!(matches!(error, PipelineError::Footage { which: "old", .. }), "{error}");
 }
