@@ -108,7 +108,9 @@ impl Manifest {
         let mut reader = Reader { folder, check, problems: Vec::new(), names: BTreeMap::new() };
         reader.unknown("", &fields, &["rototoon_batch", "steps", "shots"]);
         let common = fields.get("steps").map(|steps| reader.steps("steps", steps)).unwrap_or_default();
-        let shots = reader.shots(fields.get("shots"), &common);
+        // Where a step of all shots cannot be read, the shots are not told that they have none.
+        let has_steps = fields.get("steps").is_some_and(|steps| steps.as_array().is_none_or(|steps| !steps.is_empty()));
+        let shots = reader.shots(fields.get("shots"), has_steps.then_some(&common));
         if reader.problems.is_empty() { Ok(Self { shots }) } else { Err(reader.problems) }
     }
 }
@@ -122,7 +124,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn shots(&mut self, value: Option<&Value>, common: &[Step]) -> Vec<Shot> {
+    fn shots(&mut self, value: Option<&Value>, common: Option<&Vec<Step>>) -> Vec<Shot> {
         let Some(Value::Array(list)) = value else {
             self.problems.push(format!("shots: found {}, expected a list of shots", described(value)));
             return Vec::new();
@@ -137,7 +139,7 @@ impl Reader<'_> {
         shots
     }
 
-    fn shot(&mut self, index: usize, value: &Value, common: &[Step]) -> Option<Shot> {
+    fn shot(&mut self, index: usize, value: &Value, common: Option<&Vec<Step>>) -> Option<Shot> {
         let place = format!("shots[{index}]");
         let Value::Object(fields) = value else {
             self.problems.push(format!("{place}: found {}, expected an object", described(Some(value))));
@@ -152,9 +154,9 @@ impl Reader<'_> {
         };
         let steps = match fields.get("steps") {
             Some(steps) => self.steps(&format!("{place}.steps"), steps),
-            None => common.to_vec(),
+            None => common.cloned().unwrap_or_default(),
         };
-        if steps.is_empty() && fields.get("steps").is_none() {
+        if common.is_none() && fields.get("steps").is_none() {
             self.problems.push(format!("{place}: found no steps, expected `steps` here or for all shots"));
         }
         Some(Shot { name: name?, project: project?, blend, steps })

@@ -142,6 +142,8 @@ struct Work<'a> {
     program: Option<Program>,
     /// Names of the steps that this run did for the first time.
     fresh: Vec<&'static str>,
+    /// Files with a first name that were there before and that no step of the batch writes.
+    foreign: Vec<String>,
 }
 
 /// Runs the steps of a shot that are not done, in `folder`. The record then says how it went. What is wrong with the shot
@@ -152,7 +154,16 @@ struct Work<'a> {
 /// The record cannot be read or written; the batch was stopped.
 pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<Record, ShotError> {
     let (record, aside) = Record::read(folder)?;
-    let mut work = Work { shot, worker, folder: absolute(folder), lock, record, program: None, fresh: Vec::new() };
+    let mut work = Work {
+        shot,
+        worker,
+        folder: absolute(folder),
+        lock,
+        record,
+        program: None,
+        fresh: Vec::new(),
+        foreign: Vec::new(),
+    };
     let result = work.steps();
     work.program = None;
     work.record.failure = match result {
@@ -172,6 +183,7 @@ pub fn run(shot: &Shot, folder: &Path, lock: &Lock, worker: &Worker) -> Result<R
 
 impl Work<'_> {
     fn steps(&mut self) -> Result<(), ShotError> {
+        self.look()?;
         // First of all, so that what a killed worker renamed is known as the batch's own. What cannot get its name may not be wanted any more.
         self.place()?;
         let mut document = absolute(&self.shot.project);

@@ -106,6 +106,11 @@ impl Step {
         self.kind == Kind::Render && all && self.output.as_ref().is_some_and(plain)
     }
 
+    /// Whether it writes a file of this name. Numbers count as the same.
+    pub fn writes(&self, name: &str) -> bool {
+        self.output.iter().chain(&self.report).any(|own| shape(own) == shape(name))
+    }
+
     /// Whether it writes a document that later steps read.
     pub fn writes_document(&self) -> bool {
         matches!(self.kind, Kind::Track | Kind::Snap | Kind::Trace | Kind::Fill | Kind::Tween)
@@ -136,6 +141,12 @@ fn output(kind: Kind, default: Option<&str>, to: Option<&Value>) -> Result<Optio
     let Some(name) = to.map_or(default, Value::as_str) else {
         return Err(format!("to: found {}, expected the name of what is written, such as {example:?}", described(to)));
     };
+    let is_document = name.rsplit_once('.').is_some_and(|(_, ending)| ending.eq_ignore_ascii_case("json"));
+    if !matches!(kind, Kind::Render | Kind::Export) && !is_document {
+        return Err(format!(
+            "to: found {name:?}, expected a name that ends with \".json\": the step writes a document"
+        ));
+    }
     own_name("to", name).map(Some)
 }
 

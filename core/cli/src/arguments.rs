@@ -100,6 +100,33 @@ pub fn number(arguments: &ArgMatches, id: &str) -> f64 {
     arguments.get_one::<f64>(id).copied().unwrap_or(default)
 }
 
+/// An option that is off unless it is given. It may have a value, as in manifests of batches, where each option has one.
+pub fn switch(id: &'static str, help: &'static str) -> Arg {
+    Arg::new(id)
+        .long(id)
+        .value_name("WHETHER")
+        .help(help)
+        .num_args(0..=1)
+        .require_equals(true)
+        .default_value("off")
+        .default_missing_value("on")
+        .value_parser(["on", "off"])
+}
+
+/// Whether a switch is on.
+pub fn is_on(arguments: &ArgMatches, id: &str) -> bool {
+    choice(arguments, id) == "on"
+}
+
+/// What is wrong with words, in one line: with the values that are expected.
+pub fn in_one_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let mut lines = text.lines();
+    let first = lines.next().unwrap_or_default().trim_start_matches("error: ");
+    let expected = lines.next().map(str::trim).filter(|line| line.starts_with('['));
+    expected.map_or_else(|| first.to_owned(), |expected| format!("{first} {expected}"))
+}
+
 /// Whether a flag is on.
 pub fn flag(arguments: &ArgMatches, id: &str) -> bool {
     arguments.get_one::<bool>(id).copied().unwrap_or(false)

@@ -236,11 +236,7 @@ fn check_words(words: &[String]) -> Result<(), String> {
     let commands = super::subcommands();
     let known = commands.iter().find(|(command, _)| words.first().is_some_and(|word| command.get_name() == word));
     let Some((command, _)) = known else { return Err(format!("found no subcommand {:?}", words.first())) };
-    let given = command.clone().try_get_matches_from(words).map_err(|error| {
-        let text = error.to_string();
-        let first = text.lines().next().unwrap_or_default();
-        first.strip_prefix("error: ").unwrap_or(first).to_owned()
-    })?;
+    let given = command.clone().try_get_matches_from(words).map_err(|error| arguments::in_one_line(&error))?;
     match command.get_name() {
         "render" => render::check(&given),
         "export" => export::check(&given),

@@ -3,7 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::progress::{self, Part};
 use crate::{arguments, project};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use clap::{ArgMatches, Command};
 use rototoon::pipeline;
 use rototoon::project::{Document, Problems, Severity};
 use rototoon::scene::FrameNumber;
@@ -14,12 +14,10 @@ pub fn command() -> Command {
     Command::new("check")
         .about("Lists every problem of a document and its frames; the exit status is 0 if there are no errors")
         .arg(arguments::project())
-        .arg(
-            Arg::new("drawings")
-                .long("drawings")
-                .help("Also lists the drawings: frames that are held, with noise or without it, are one drawing")
-                .action(ArgAction::SetTrue),
-        )
+        .arg(arguments::switch(
+            "drawings",
+            "Also lists the drawings: frames that are held, with noise or without it, are one drawing",
+        ))
         .args(arguments::of_run())
 }
 
@@ -29,7 +27,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let document = Document::load(path)?;
     let home = project::home(&document, path);
     let failed = |error| Failure::of(error, path);
-    let is_asked = given.get_flag("drawings");
+    let is_asked = arguments::is_on(given, "drawings");
     let (problems, drawings) = progress::run(given, path, |bar| {
         let problems = pipeline::check(&document, &home, &Part::first(bar, is_asked)).map_err(failed)?;
         if !is_asked || problems.error_count() > 0 {

@@ -2,7 +2,7 @@
 //! them. It is not for people: `rototoon_batch::answer` says what it reads and prints.
 
 use crate::failure::{Failure, WRONG_USE, line};
-use crate::{stop, tell, usage};
+use crate::{arguments, stop, tell, usage};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pictures::store;
 use rototoon::scene::Cancelled;
@@ -55,7 +55,7 @@ fn step(words: &[String]) -> u8 {
     let program = std::iter::once("rototoon").chain(words.iter().map(String::as_str));
     match crate::program().try_get_matches_from(program) {
         Ok(matches) => crate::execute(&matches).status(),
-        Err(error) => refused(error.to_string().lines().next().unwrap_or_default().trim_start_matches("error: ")),
+        Err(error) => refused(&arguments::in_one_line(&error)),
     }
 }
 

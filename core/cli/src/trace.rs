@@ -42,19 +42,12 @@ pub fn command() -> Command {
         .arg(arguments::sensitivity())
         .arg(arguments::leave_out())
         .arg(
-            Arg::new("keep-first")
-                .long("keep-first")
-                .value_name("WHETHER")
-                .help(
-                    "Says that an earlier run traced the first frame, which stays as it is. The frames from there to the document's first drawing \
-                     follow both. A document that has the strokes of that run needs no such option",
-                )
-                .conflicts_with("drawings")
-                .num_args(0..=1)
-                .require_equals(true)
-                .default_value("off")
-                .default_missing_value("on")
-                .value_parser(["on", "off"]),
+            arguments::switch(
+                "keep-first",
+                "Says that an earlier run traced the first frame, which stays as it is. The frames from there to the document's first drawing \
+                 follow both. A document that has the strokes of that run needs no such option",
+            )
+            .conflicts_with("drawings"),
         )
         .arg(arguments::cache(
             "Folder where strokes are kept. Steps from drawing to drawing with the same strokes and pictures as before come from it",
@@ -80,7 +73,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return on_keys(given, document, &keys.copied().collect(), &lines);
     }
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
-    let options = pipeline::TraceOptions { lines, keep_first: arguments::choice(given, "keep-first") == "on" };
+    let options = pipeline::TraceOptions { lines, keep_first: arguments::is_on(given, "keep-first") };
     let cache = arguments::cached(given);
     let (document, earlier) = progress::run(given, from, |bar| {
         let kept = Kept { cache: cache.as_ref().map(|cache| cache as _), memory: None };

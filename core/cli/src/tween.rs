@@ -4,7 +4,7 @@ use crate::failure::{Failure, line};
 use crate::progress::{self, Part};
 use crate::{arguments, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Arg, ArgAction, ArgMatches, Command};
+use clap::{Arg, ArgMatches, Command};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
@@ -17,7 +17,8 @@ pub fn command() -> Command {
         .arg(arguments::project())
         .arg(arguments::output("OUT", "The document to write, with matches and in-betweens"))
         .args(of_movement())
-        .arg(Arg::new("suggest").long("suggest").action(ArgAction::SetTrue).help(
+        .arg(arguments::switch(
+            "suggest",
             "Says on which frame a breakdown, one more drawing, helps most: the frame that brings the in-betweens \
              nearest to the footage, or else the middle of the span that moves most",
         ))
@@ -80,7 +81,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let follow = arguments::choice(given, "captured") == "follow";
     let (document, notes, suggested) = progress::run(given, from, |bar| {
         let failed = |error| Failure::of(error, from);
-        let is_asked = given.get_flag("suggest");
+        let is_asked = arguments::is_on(given, "suggest");
         let first = Part::first(bar, is_asked);
         let done = pipeline::tween(&mut document, &options, follow, &first).map_err(failed)?;
         let notes = [done.holding(), done.exchanging()];

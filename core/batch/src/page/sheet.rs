@@ -43,11 +43,11 @@ pub fn write(
 ) -> Result<(), WriteError> {
     let sheet = shot.join(SHEET);
     let failed = |source| WriteError { path: sheet.clone(), source };
-    // What is in this folder is the batch's own.
-    match fs::remove_dir_all(&sheet) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(failed(error)),
-        _ => fs::create_dir(&sheet).map_err(failed)?,
+    // Files with other names are somebody else's.
+    for (_, path) in read(shot) {
+        fs::remove_file(&path).map_err(|source| WriteError { path: path.clone(), source })?;
     }
+    fs::create_dir_all(&sheet).map_err(failed)?;
     let footage = &document.scene.footage;
     let pixels = (footage.width as u64).saturating_mul(footage.height as u64);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -64,7 +64,7 @@ pub fn write(
 /// The frames of a shot's pictures in the order of time, with their files.
 pub fn read(shot: &Path) -> Vec<(FrameNumber, PathBuf)> {
     let Ok(entries) = fs::read_dir(shot.join(SHEET)) else { return Vec::new() };
-    let frame = |path: &Path| path.file_stem()?.to_str()?.parse::<FrameNumber>().ok();
+    let frame = |path: &Path| path.file_name()?.to_str()?.strip_suffix(".jpg")?.parse::<FrameNumber>().ok();
     let mut found: Vec<_> = entries.flatten().filter_map(|entry| Some((frame(&entry.path())?, entry.path()))).collect();
     found.sort();
     found

@@ -11,6 +11,18 @@ impl Work<'_> {
         digest::of_file(&self.folder.join(name)).is_ok_and(|found| found == hash)
     }
 
+    /// Looks which files with a first name no step writes. They are somebody else's, and stay.
+    pub(super) fn look(&mut self) -> Result<(), ShotError> {
+        let is_own = |name: &String| {
+            let name = name.strip_prefix(NEW).unwrap_or(name);
+            self.record.pending.contains_key(name)
+                || self.record.files.contains_key(name)
+                || self.shot.steps.iter().any(|step| step.writes(name))
+        };
+        self.foreign = self.new_files()?.into_iter().filter(|name| !is_own(name)).collect();
+        Ok(())
+    }
+
     /// Removes what a step left that did not come to its end.
     pub(super) fn clear(&self) -> Result<(), ShotError> {
         for name in self.new_files()? {
@@ -20,12 +32,13 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Files with their first names, sorted.
+    /// Files of the batch with their first names, sorted.
     pub(super) fn new_files(&self) -> Result<Vec<String>, ShotError> {
         let failed = |source| ShotError::File { path: self.folder.clone(), source };
         let mut names = Vec::new();
         for entry in fs::read_dir(&self.folder).map_err(failed)? {
-            names.extend(entry.map_err(failed)?.file_name().into_string().ok().filter(|name| name.starts_with(NEW)));
+            let name = entry.map_err(failed)?.file_name().into_string().ok();
+            names.extend(name.filter(|name| name.starts_with(NEW) && !self.foreign.contains(name)));
         }
         names.sort();
         Ok(names)

@@ -194,6 +194,24 @@ fn files_of_others_are_never_replaced() {
 }
 
 #[test]
+fn files_whose_names_look_like_those_of_a_batch_stay() {
+    let season = Season::new(1);
+    let own =
+        ["out/sh0/.new-idea.txt", "out/sh0/.new-folder/a.txt", "out/sh0/.sheet/notes.txt", "out/sh0/.sheet/1.png"];
+    for path in own.map(|name| season.path(name)) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, "mine").unwrap();
+    }
+    season.good(&[]);
+    draw(&season.path("in/sh0/f_002.png"), 12);
+    season.good(&[]);
+    for name in own {
+        assert_eq!(fs::read_to_string(season.path(name)).unwrap(), "mine", "{name}");
+    }
+    assert!(season.path("out/sh0/.sheet/0.jpg").exists());
+}
+
+#[test]
 fn a_worker_killed_between_two_names_leaves_no_strange_files() {
     let season = Season::new(1);
     season.good(&[]);
@@ -277,6 +295,12 @@ fn wrong_steps_and_names_of_results_end_before_any_work() {
     let track = json!({"do": "track"});
     for (steps, expected) in [
         (json!([{"do": "track", "preset": "magic"}]), "steps[0]: invalid value 'magic'"),
+        (json!([{"do": "track", "preset": "magic"}]), "[possible values: rototoon, zhou2011,"),
+        (
+            json!([track, {"do": "snap", "to": "x.txt"}]),
+            "steps[1]: to: found \"x.txt\", expected a name that ends with",
+        ),
+        (json!([{"do": "check", "drawings": "perhaps"}]), "steps[0]: invalid value 'perhaps' for '--drawings"),
         (json!([{"do": "snap", "colour": 3}]), "steps[0]: unexpected argument '--colour'"),
         (json!([{"do": "trak"}]), "steps[0]: do: found \"trak\""),
         (json!([track, {"do": "export", "to": "m.fbx"}]), "steps[1]: m.fbx: expected a name that ends in .svg"),
@@ -297,8 +321,11 @@ fn wrong_steps_and_names_of_results_end_before_any_work() {
         let output = season.run(&[]);
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && said.contains(expected), "{expected}: {said}");
+        assert!(!said.contains("found no steps"), "the shots are not told of it: {said}");
     }
     assert!(!season.path("out").exists());
+    season.manifest(&json!([{"do": "check", "drawings": true}, {"do": "track"}, {"do": "tween", "suggest": false}]), 1);
+    season.good(&[]);
 }
 
 #[test]
