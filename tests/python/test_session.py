@@ -82,6 +82,29 @@ def test_new_key_splits_a_span(session):
     assert session.tracks("red").frames.tolist() == list(range(7))
 
 
+def test_corrections_stay_where_the_only_key_is_replaced(document, folder):
+    own = {"keys": {"6": square(6, 0)}, "pins": {"3": {"0": [18, 7]}}, "centers": {"9": [40, 16]}}
+    with Session.from_document(document | {"parts": [document["parts"][0] | own]}, folder) as session:
+        session.remove_key("red", 6)
+        session.set_key("red", 7, square(7, 0))
+        [part] = session.document()["parts"]
+        assert (list(part["keys"]), part["pins"], part["centers"]) == (["7"], own["pins"], own["centers"])
+        session.remove_key("red", 7)
+        session.set_key("red", 7, square(7, 0)[1:])
+        assert session.document()["parts"][0]["pins"] == own["pins"], "the pin is on a point that is there"
+
+
+def test_what_names_a_part_goes_with_it(session, document):
+    given = {
+        "follows": [{"part": "red", "of": "blau ü"}, {"part": "blau ü", "what": "root"}],
+        "depth_marks": [{"front": "red", "behind": "blau ü"}],
+    }
+    session.set_document(document | given)
+    session.remove_part("red")
+    left = session.document()
+    assert (left["follows"], left.get("depth_marks", [])) == (given["follows"][1:], [])
+
+
 def test_result_does_not_depend_on_threads(document, folder):
     def tracked(threads):
         with Session.from_document(document, folder) as session:

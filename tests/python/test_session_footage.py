@@ -1,5 +1,6 @@
 """Sessions and their pictures: what is known of them, pictures that were drawn again or moved, and those that are missing."""
 
+import json
 import math
 
 import pytest
@@ -49,6 +50,46 @@ def test_footage_that_is_drawn_again_under_the_same_names_is_read_again(document
     assert snapped[0] != snapped[1]
     for points, truth in ((before, square(0, 0)), (after, square(3, 0))):
         assert all(math.dist(p, t) < 1.0 for p, t in zip(points[3], truth, strict=True))
+
+
+def test_changed_pictures_are_told_by_the_next_track_whoever_saw_them(document, folder, tmp_path, monkeypatch):
+    monkeypatch.setenv("ROTOTOON_CACHE", "none")
+    for frame in FRAMES:
+        write_png(tmp_path / f"frame_{frame:03}.png", draw(frame))
+
+    def cancelled(session):
+        with pytest.raises(Cancelled):
+            session.track(progress=lambda done, _: False)
+
+    with Session.from_document(document, tmp_path) as session:
+        session.track()
+        for seen, drawn in ((Session.snap, 5), (cancelled, 6)):
+            write_png(tmp_path / "frame_003.png", draw(drawn))
+            seen(session)
+            assert session.track().footage_changed
+            assert not session.track().footage_changed
+
+
+def test_a_session_of_a_bare_name_stays_in_the_folder_where_it_was_opened(document, folder, tmp_path, monkeypatch):
+    shots = [tmp_path / name for name in ("a", "b")]
+    for shot, speed in zip(shots, (1, 0), strict=True):
+        shot.mkdir()
+        (shot / "project.json").write_text(json.dumps(document), "utf-8")
+        for frame in FRAMES:
+            write_png(shot / f"frame_{frame:03}.png", draw(speed * frame))
+    monkeypatch.chdir(shots[0])
+    with Session.open("project.json") as bare, Session.open(shots[0] / "project.json") as full, Session.from_document(document, "") as here:
+        monkeypatch.chdir(shots[1])
+        found = []
+        for session in (bare, full, here):
+            session.track()
+            found.append(session.tracks("red").points.tolist())
+        assert found[0] == found[1] == found[2]
+        frame = shots[0] / "frame_003.png"
+        before = frame.read_bytes()
+        with pytest.raises(RototoonError, match="frame_003"):
+            bare.save(frame)
+        assert frame.read_bytes() == before
 
 
 def test_tracks_have_the_marks_of_their_pictures(document, folder, tmp_path, monkeypatch):

@@ -110,7 +110,8 @@ fn part_mut<'a>(scene: &'a mut Scene, name: &str) -> Result<&'a mut Part, EditEr
 /// Sets the artist's contour of a part on a frame. `coordinates` are x, y, x, y, ... in pixels.
 ///
 /// Corrections on the frame are removed. If the part's only key gets another number of points, the part loses all
-/// corrections and results, because they belong to points that no longer exist.
+/// corrections and results, because they belong to points that no longer exist. A part whose last key was removed keeps its corrections if the new
+/// key has their points.
 pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &[f64]) -> Result<(), EditError> {
     let (first, last) = (scene.footage.first, scene.footage.last);
     let part = part_mut(scene, name)?;
@@ -118,7 +119,12 @@ pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &
         return Err(EditError::OutsideFootage { part: name.into(), frame, first, last });
     }
     let points = key_points(part, frame, coordinates)?;
-    if points.len() != part.point_count() {
+    let pinned = part.pins.values().filter_map(|pins| pins.keys().next_back()).max();
+    let fits = match part.keys.is_empty() {
+        true => pinned.is_none_or(|&last| last < points.len()),
+        false => points.len() == part.point_count(),
+    };
+    if !fits {
         part.pins.clear();
         part.centers.clear();
         forget_results(part, |_| true);

@@ -54,6 +54,7 @@ pub mod filled_abi;
 pub mod functions;
 pub mod handles;
 pub mod matching;
+mod naming;
 pub mod options;
 pub mod outcomes;
 mod pool;

@@ -5,6 +5,7 @@
 
 use crate::status::Failure;
 use rototoon::pipeline::Together;
+use rototoon::project::schema::MAX_FRAME_NUMBER;
 use rototoon::scene::{FrameNumber, Outcome, Part};
 use rototoon::track::weakest_frame;
 use serde::{Deserialize, Serialize};
@@ -70,6 +71,14 @@ impl From<Asked> for Part {
 pub fn answer(request: &str) -> Result<String, Failure> {
     let request: Request =
         serde_json::from_str(request).map_err(|error| Failure::Error(format!("request: {error}")))?;
+    let frames =
+        request.parts.iter().flat_map(|part| part.keys.iter().chain(part.confidence.keys()).chain(&part.wants_key));
+    let pairs = request.exchanges.iter().flat_map(|pair| &pair.frames);
+    if let Some(frame) = frames.chain(pairs).find(|frame| i64::from(**frame).abs() > MAX_FRAME_NUMBER) {
+        return Err(Failure::Error(format!(
+            "request: found frame {frame}, expected frames within ±{MAX_FRAME_NUMBER}"
+        )));
+    }
     let parts: Vec<Part> = request.parts.into_iter().map(Part::from).collect();
     let found = |part: &Part| {
         let Outcome { sure, doubtful, lost } = Outcome::of(part);

@@ -43,8 +43,15 @@ pub enum Pool {
     Own(Threads),
 }
 
+/// As many threads as can be of use. Many more than there are cores only wait for each other, for minutes. No result depends on their number.
+fn useful() -> usize {
+    /// Threads for each core: some wait for the disk.
+    const EACH: usize = 4;
+    EACH * std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 impl Pool {
-    /// A pool of `threads` threads, 0 for one per core.
+    /// A pool of `threads` threads, 0 for one per core. There are at most four for each core.
     ///
     /// # Errors
     ///
@@ -52,7 +59,7 @@ impl Pool {
     pub fn of(threads: usize) -> Result<Self, Failure> {
         match threads {
             0 => Self::kept(),
-            1..=MAX_THREADS => Threads::new(threads).map(Self::Own),
+            1..=MAX_THREADS => Threads::new(threads.min(useful())).map(Self::Own),
             _ => Err(Failure::Error(format!("threads: found {threads}, expected at most {MAX_THREADS}"))),
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::conformed;
 use crate::filled::{self, RototoonFilled};
+use crate::naming::without_part;
 use crate::options::Options;
 use crate::status::Failure;
 use crate::traced::{Asked, RototoonTraced};
@@ -36,6 +37,8 @@ pub struct Session {
     folder: PathBuf,
     known: Known,
     pictures: Option<Sequence>,
+    /// Whether files of the footage have changed since the pictures were read, and no track has said so yet.
+    pictures_changed: bool,
     trackers: BTreeMap<&'static str, Tracker>,
     /// The marks of the pictures that were read for tracking.
     looked: BTreeMap<FrameNumber, Seen>,
@@ -99,13 +102,15 @@ impl Session {
     }
 
     fn of(document: Document, folder: &Path) -> Self {
-        // An absolute folder does not depend on later changes of the working directory.
+        // An absolute folder does not depend on later changes of the working directory. A bare file name has no folder, which is the present one.
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         Self {
             document,
             folder,
             known: Known::new(),
             pictures: None,
+            pictures_changed: false,
             trackers: BTreeMap::new(),
             looked: BTreeMap::new(),
         }
@@ -175,9 +180,10 @@ impl Session {
         Ok(())
     }
 
-    /// Removes a part with its keys, corrections and results.
+    /// Removes a part with its keys, corrections and results, and [what names it](without_part).
     pub fn remove_part(&mut self, name: &str) -> Result<(), Failure> {
         let index = self.document.scene.part_index(name).map_err(Failure::error)?;
+        self.rewrite(|document| without_part(document, name))?;
         self.document.scene.parts.remove(index);
         Ok(())
     }
@@ -214,7 +220,7 @@ impl Session {
     pub fn track(&mut self, options: &str, go_on: GoOn<'_>) -> Result<String, Failure> {
         let options = Options::parse(options, Stage::Track)?;
         let (preset, id) = preset(options.choice("preset"))?;
-        let footage_changed = self.forget_old_pictures();
+        self.forget_old_pictures();
         let pictures = pictures(&mut self.pictures, &self.document, &self.folder)?;
         pipeline::memory::to_follow(&self.document.scene.footage).map_err(Failure::error)?;
         let scene = pipeline::in_effect(&self.document.scene);
@@ -231,6 +237,7 @@ impl Session {
         self.looked = noted.seen();
         let tracking = tracking?;
         pipeline::store_seen(&mut self.document, &tracking, self.looked.clone()).map_err(Failure::error)?;
+        let footage_changed = std::mem::take(&mut self.pictures_changed);
         Ok(summary(&self.document.scene, &tracking, footage_changed))
     }
 
@@ -350,13 +357,12 @@ impl Session {
         Ok(report)
     }
 
-    /// Drops pictures and solved spans if files of the footage have changed since they were read. Returns whether they have.
-    fn forget_old_pictures(&mut self) -> bool {
-        let changed = self.pictures.as_ref().is_some_and(Sequence::has_changed);
-        if changed {
+    /// Drops pictures and solved spans if files of the footage have changed since they were read.
+    fn forget_old_pictures(&mut self) {
+        if self.pictures.as_ref().is_some_and(Sequence::has_changed) {
             self.forget();
+            self.pictures_changed = true;
         }
-        changed
     }
 
     /// Drops pictures and solved spans. After a panic they may be half-written.
