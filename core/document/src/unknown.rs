@@ -3,12 +3,16 @@
 //! A document may hold any further fields: notes of other tools are kept. So an unknown name is no mistake in itself. A
 //! name that is within one or two letters of a known one probably is: the artist's corrections would have no effect, and
 //! nothing would say so.
+//!
+//! Fields of drawings, clicks and the like are in lists. Of many that are misspelt in one way the first is named.
 
 use super::Document;
 use super::problem::Problems;
 use super::schema::{FOOTAGE, Field, GAPS, PART, TOP};
 use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
+use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The document's fields that other stages read.
 const OTHERS: &[&str] = &[
@@ -32,6 +36,33 @@ const OTHERS: &[&str] = &[
     "reshaped",
 ];
 
+/// Fields of objects within others: the way to the object, through lists and fields, and the names that are read there.
+const WITHIN: &[(&[&str], &[&str])] = &[
+    (&["drawings"], &["frame", "strokes", "spacing", "corner"]),
+    (
+        &["drawings", "strokes"],
+        &["points", "closed", "fill", "fill_colour", "widths", "colour", "material", "layer", "peg"],
+    ),
+    (&["pairs"], &["frame", "from", "to"]),
+    (&["pegs"], &["name", "parent", "pivot", "keys"]),
+    (&["pegs", "keys"], &["frame", "shift", "turn", "scale", "timing"]),
+    (&["traced", "strokes"], &["track", "points", "closed", "fill", "fill_colour", "widths", "colour", "confidence"]),
+    (&["fills"], &["frame", "regions"]),
+    (&["fills", "regions"], &["at", "colour", "name"]),
+    (&["recolours"], &["from", "to", "first", "last"]),
+    (&["recolours", "from"], &["name", "colour"]),
+    (&["recolours", "to"], &["name", "colour"]),
+    (&["filled", "regions"], &["outline", "holes", "colour", "name", "track", "confidence"]),
+    (&["limbs"], &["from", "to", "start", "end", "carries", "bends", "rigidity"]),
+    (&["limbs", "start"], &["points", "share"]),
+    (&["limbs", "end"], &["points", "share"]),
+    (&["limbs", "start", "points"], &["part", "at", "drawn"]),
+    (&["limbs", "end", "points"], &["part", "at", "drawn"]),
+    (&["limbs", "carries"], &["part", "turn"]),
+    (&["depth_marks"], &["front", "behind", "first", "last"]),
+    (&["follows"], &["part", "what", "of"]),
+];
+
 impl Document {
     /// A warning for each unknown field with almost the name of a known one.
     pub fn misspelt(&self) -> Problems {
@@ -43,7 +74,55 @@ impl Document {
             let fields = self.layout.parts.get(&part.name).map_or(&[][..], Vec::as_slice);
             warn(&part_place(index, Some(&part.name)), fields, &PART, &mut problems);
         }
+        self.misspelt_within(&mut problems);
         problems
+    }
+
+    fn misspelt_within(&self, problems: &mut Problems) {
+        let mut fields: BTreeMap<&str, Option<Value>> = BTreeMap::new();
+        for (way, known) in WITHIN {
+            let Some((first, rest)) = way.split_first() else { continue };
+            let read = || serde_json::from_str(self.other_field(first)?).ok();
+            let mut found = BTreeMap::new();
+            if let Some(value) = fields.entry(first).or_insert_with(read) {
+                search(value, first, rest, known, &mut found);
+            }
+            for (name, (place, count)) in found {
+                let Some(meant) = known.iter().find(|known| alike(name, known)) else { continue };
+                let more = if count > 1 { format!(", here and in {} more places", count - 1) } else { String::new() };
+                let told = format!("no field has this name, so it has no effect{more}; probably {meant:?} is meant");
+                problems.warning(place, told);
+            }
+        }
+    }
+}
+
+/// Looks for misspelt fields of the objects at the end of a way. Returns for each name the first place and the number of places.
+fn search<'a>(
+    value: &'a Value,
+    place: &str,
+    way: &[&str],
+    known: &[&str],
+    found: &mut BTreeMap<&'a str, (String, usize)>,
+) {
+    match (value, way.split_first()) {
+        (Value::Array(list), _) => {
+            for (k, value) in list.iter().enumerate() {
+                search(value, &format!("{place}[{k}]"), way, known, found);
+            }
+        }
+        (Value::Object(fields), Some((next, rest))) => {
+            if let Some(value) = fields.get(*next) {
+                search(value, &format!("{place}.{next}"), rest, known, found);
+            }
+        }
+        (Value::Object(fields), None) => {
+            let unknown = fields.keys().map(String::as_str).filter(|name| !known.contains(name));
+            for name in unknown.filter(|name| known.iter().any(|known| alike(name, known))) {
+                found.entry(name).or_insert_with(|| (format!("{place}.{name}"), 0)).1 += 1;
+            }
+        }
+        _ => {}
     }
 }
 
@@ -87,6 +166,31 @@ mod tests {
             told(&part("wantsKey"), "wants_key"),
             told(&part("colour"), "color"),
             told(&part("pin"), "pins"),
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn fields_within_lists_are_looked_at_and_told_once() {
+        let text = r#"{"rototoon": 1,
+            "footage": {"pattern": "%d.png", "first": 0, "last": 9, "fps": 24, "width": 64, "height": 48}, "parts": [],
+            "drawings": [{"frame": 0, "strokes": [{"points": [], "color": [0, 0, 0]}, {"points": [], "color": 1, "width": [], "note": 1}]},
+                {"frame": 4, "strokes": [{"points": [], "color": 1}]}],
+            "pegs": [{"name": "a", "keys": [{"frame": 1, "shifts": [0, 0], "anchor": 3}]}],
+            "recolours": [{"from": {"name": "a", "color": 1}, "to": {}, "frist": 3}],
+            "fills": [{"frame": 0, "regions": {"at": 1}}], "limbs": 5, "depth_marks": [{"front": "a", "behind": "b", "lasts": 3}]}"#;
+        let found: Vec<_> =
+            Document::parse(text, "a").unwrap().misspelt().warnings().map(ToString::to_string).collect();
+        let told = |place: &str, more: &str, meant: &str| {
+            format!("{place}: no field has this name, so it has no effect{more}; probably {meant:?} is meant")
+        };
+        let expected = [
+            told("drawings[0].strokes[0].color", ", here and in 2 more places", "colour"),
+            told("drawings[0].strokes[1].width", "", "widths"),
+            told("pegs[0].keys[0].shifts", "", "shift"),
+            told("recolours[0].frist", "", "first"),
+            told("recolours[0].from.color", "", "colour"),
+            told("depth_marks[0].lasts", "", "last"),
         ];
         assert_eq!(found, expected);
     }

@@ -13,6 +13,7 @@ use crate::scene::{Footage, FrameError, FrameNumber, FrameSource, Progress, Scen
 use crate::track::rototoon::{WIDEST, too_wide};
 use crate::tween::peg::{self, PegError};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// All problems of a document in `folder` and of its frames. Every frame is read.
@@ -45,7 +46,10 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
     }
     shape(&document.scene.footage, &mut problems);
     let sequence = Sequence::keeping(&document.scene.footage, folder, 0)?;
-    let numbers: Vec<FrameNumber> = (document.scene.footage.first..=document.scene.footage.last).collect();
+    // A picture that is held for many frames is read once.
+    let mut shown = BTreeSet::new();
+    let numbers = document.scene.footage.first..=document.scene.footage.last;
+    let numbers: Vec<FrameNumber> = numbers.filter(|&frame| shown.insert(sequence.shown(frame))).collect();
     let (mut done, mut unreadable) = (0, Vec::new());
     progress.report("Reading frames", 0.0)?;
     for batch in numbers.chunks(rayon::current_num_threads().max(1)) {
