@@ -119,8 +119,13 @@ impl Document {
             (Some(Some("root")), false) => Follow::Root,
             (Some(Some("contact")), false) => Follow::Contact,
             (Some(Some("nothing")), false) => Follow::Nothing,
+            (Some(_), true) => {
+                let found = format!("{} beside \"of\"", described(fields.get("what")));
+                return Err(wrong(&format!("{place}.what"), &found, "one of the two fields"));
+            }
             _ => {
-                let expected = "one of root, contact, nothing, or in its place the field of with the name of a part";
+                let expected =
+                    "one of root, contact, nothing, or in place of this field \"of\" with the name of a part";
                 return Err(wrong(&format!("{place}.what"), &described(fields.get("what")), expected));
             }
         };

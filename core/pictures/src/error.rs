@@ -1,7 +1,7 @@
 //! The reasons why a file gives no picture.
 
 use image::error::{ImageFormatHint, UnsupportedErrorKind};
-use image::{ImageError, ImageFormat};
+use image::{ExtendedColorType, ImageError, ImageFormat};
 use std::io;
 
 /// The reason why a file gives no picture.
@@ -48,10 +48,10 @@ impl From<ImageError> for DecodeError {
 /// The message for a form of TIFF that is not read: what was found, and what to do. `None` for any other error.
 fn unsupported_tiff(error: &ImageError) -> Option<String> {
     let ImageError::Unsupported(unsupported) = error else { return None };
-    const FORMS: &str = "8 or 16 bits or floats, in grey, colour or CMYK";
+    const FORMS: &str = "8 or 16 bits of grey, colour or CMYK, or floats of colour";
     let is_tiff = unsupported.format_hint() == ImageFormatHint::Exact(ImageFormat::Tiff);
     let (found, expected) = match unsupported.kind() {
-        UnsupportedErrorKind::Color(colour) => (format!("{} bits a pixel", colour.bits_per_pixel()), FORMS),
+        UnsupportedErrorKind::Color(colour) => (form_of(colour), FORMS),
         UnsupportedErrorKind::GenericFeature(feature) => {
             match feature.strip_prefix("compression method ").and_then(|rest| rest.split(' ').next()) {
                 Some(name) => (format!("the compression {name}"), "none, LZW, Deflate or PackBits"),
@@ -62,6 +62,19 @@ fn unsupported_tiff(error: &ImageError) -> Option<String> {
         _ => return None,
     };
     is_tiff.then(|| of_tiff(&found, expected))
+}
+
+/// What the bits of a pixel are.
+fn form_of(colour: ExtendedColorType) -> String {
+    let bits = colour.bits_per_pixel();
+    match colour {
+        ExtendedColorType::La8 | ExtendedColorType::La16 => format!("{bits} bits a pixel of grey with alpha"),
+        // Floats of grey, YCbCr, Lab and others, which the library does not tell apart.
+        ExtendedColorType::Unknown(_) => {
+            format!("{bits} bits a pixel in another form, such as YCbCr or floats of grey")
+        }
+        _ => format!("{bits} bits a pixel ({colour:?})"),
+    }
 }
 
 fn of_tiff(found: &str, expected: &str) -> String {
@@ -110,7 +123,7 @@ mod tests {
         let said = |found: &str, expected: &str| {
             Err(format!("found a TIFF picture with {found}, expected {expected}: save its frames so, or as PNG"))
         };
-        assert_eq!(told(3, 1), said("a palette", "8 or 16 bits or floats, in grey, colour or CMYK"));
+        assert_eq!(told(3, 1), said("a palette", "8 or 16 bits of grey, colour or CMYK, or floats of colour"));
         assert_eq!(told(1, 50000), said("the compression ZSTD", "none, LZW, Deflate or PackBits"));
     }
 }

@@ -196,22 +196,36 @@ pub fn undrawn(document: &Document, job: &RenderJob) -> Option<String> {
     let range = frames_of(&document.scene.footage, job.frames.clone()).ok()?;
     let regions = job.picture.shows_regions().then(|| {
         let there = document.filled().ok()?.iter().map(|drawing| drawing.frame).collect();
-        lacking(there, range.clone(), "painted", "fill")
+        lacking(there, range.clone(), "painted", &|_| "fill")
     });
     let strokes = job.picture.shows_strokes().then(|| {
         let there = strokes::strokes(document).ok()?.into_keys().collect();
-        lacking(there, range, "drawn", "trace")
+        let keys: Vec<FrameNumber> = document.drawings().ok()?.drawings.iter().map(|drawing| drawing.frame).collect();
+        let is_between = |frame: &FrameNumber| keys.first() < Some(frame) && Some(frame) < keys.last();
+        lacking(there, range, "drawn", &|frame| if is_between(&frame) { "tween" } else { "trace" })
     });
     let told: Vec<String> = [regions, strokes].into_iter().flatten().flatten().collect();
     (!told.is_empty()).then(|| told.join("; "))
 }
 
-fn lacking(there: Vec<FrameNumber>, range: RangeInclusive<FrameNumber>, what: &str, command: &str) -> Option<String> {
-    let lacking: Vec<String> =
-        range.filter(|frame| there.binary_search(frame).is_err()).map(|frame| frame.to_string()).collect();
-    let more = lacking.len().saturating_sub(NAMED);
-    let listed = lacking[..lacking.len() - more].join(", ");
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    let frames = if lacking.len() == 1 { "frame" } else { "frames" };
-    (!lacking.is_empty()).then(|| format!("{frames} {listed}{more}: not {what}; run `rototoon {command}` there"))
+/// The frames of a range that are not `there`, and for each the command that makes what is lacking.
+fn lacking(
+    there: Vec<FrameNumber>,
+    range: RangeInclusive<FrameNumber>,
+    what: &str,
+    command: &dyn Fn(FrameNumber) -> &'static str,
+) -> Option<String> {
+    let mut by_command: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for frame in range.filter(|frame| there.binary_search(frame).is_err()) {
+        by_command.entry(command(frame)).or_default().push(frame.to_string());
+    }
+    let told = |(command, lacking): (&str, Vec<String>)| {
+        let more = lacking.len().saturating_sub(NAMED);
+        let listed = lacking[..lacking.len() - more].join(", ");
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let frames = if lacking.len() == 1 { "frame" } else { "frames" };
+        format!("{frames} {listed}{more}: not {what}; run `rototoon {command}` there")
+    };
+    let told: Vec<String> = by_command.into_iter().map(told).collect();
+    (!told.is_empty()).then(|| told.join("; "))
 }
