@@ -5,7 +5,7 @@ import bpy
 from .bones.properties import BoneSettings, RototoonBone
 from .capture.properties import CaptureSettings, RototoonPart
 from .lines.properties import LineSettings
-from .paint.properties import FillSettings, RototoonRecolour
+from .paint.properties import FillSettings, RototoonPaletteColour, RototoonRecolour
 from .style import clip_browser
 from .style.properties import ClipSettings, RototoonBrowser, RototoonClip
 
@@ -17,7 +17,7 @@ class RototoonSettings(BoneSettings, ClipSettings, FillSettings, LineSettings, C
     known_files: bpy.props.StringProperty(description="What the documents held from which the object was read, or to which it was written, as JSON")
 
 
-CLASSES = (RototoonPart, RototoonBone, RototoonRecolour, RototoonSettings, RototoonClip, RototoonBrowser)
+CLASSES = (RototoonPart, RototoonBone, RototoonRecolour, RototoonPaletteColour, RototoonSettings, RototoonClip, RototoonBrowser)
 
 
 def attach() -> None:

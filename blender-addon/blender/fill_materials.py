@@ -15,6 +15,8 @@ NAME = "Paint "
 """Beginning of the names. The colour as hexadecimal digits follows."""
 OWN = "rototoon_paint"
 """Property of materials that were made here. They stay so under another name."""
+ASKED = "rototoon_paint_name"
+"""Property of materials that were made for a name which Blender changed: another material has it, or it is too long."""
 NOTHING = "No Paint"
 """Name of the material of shapes whose region stays without paint. Its fill is transparent, and so is that of each such material."""
 SAME = 0.6 / 255
@@ -50,11 +52,19 @@ def named(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
     for place, own in enumerate(ob.data.materials):
         if own is not None and own.name == name and _serves(own, colour):
             return place
+    for place, own in enumerate(ob.data.materials):
+        if own is not None and _stands_for(own, name) and _serves(own, colour):
+            return place
     other = bpy.data.materials.get(name)
     if other is not None and _serves(other, colour):
         ob.data.materials.append(other)
         return len(ob.data.materials) - 1
     return _append(ob, name, colour)
+
+
+def _stands_for(material: bpy.types.Material, name: str) -> bool:
+    """Whether a material was made for a name that Blender changed, and was not renamed since."""
+    return material.get(ASKED) == name and (material.name.startswith(name) or name.startswith(material.name))
 
 
 def _serves(material: bpy.types.Material, colour: np.ndarray) -> bool:
@@ -120,6 +130,8 @@ def _make(ob: bpy.types.Object, colour: np.ndarray) -> int:
 def _append(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
     made = bpy.data.materials.new(name)
     made[OWN] = True
+    if made.name != name:
+        made[ASKED] = name
     bpy.data.materials.create_gpencil_data(made)
     style = made.grease_pencil
     style.color = style.fill_color = (*to_linear(np.asarray(colour, np.float64)), 1.0)

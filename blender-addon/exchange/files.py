@@ -17,7 +17,7 @@ from .fields import wrong
 
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height", "gaps"}
 _PART = {"name", "closed", "depth", "keys", "pins", "centers", "tracks", "confidence", "curves", "wants_key"}
-_TOP = {"rototoon", "footage", "parts", "drawings", "pairs", "traced", "in_betweens", "matches", "fills", "filled", "recolours"}
+_TOP = {"rototoon", "footage", "parts", "drawings", "pairs", "traced", "in_betweens", "matches", "palette", "fills", "filled", "recolours"}
 
 
 def load(path: str) -> dict[str, Any]:
@@ -80,9 +80,19 @@ def check(document: Any) -> None:
         raise wrong("footage.gaps", shot["gaps"], f'"{HELD}", or no such field')
     if not isinstance(document.get("parts", []), list):
         raise wrong("parts", document["parts"], "a list of parts")
+    _check_palette(document.get("palette", {}))
     names = set()
     for index, part in enumerate(document.get("parts", [])):
         _check_part(f"parts[{index}]", part, names)
+
+
+def _check_palette(palette: Any) -> None:
+    if not isinstance(palette, dict):
+        raise wrong("palette", palette, "an object with a colour for each name")
+    for name, colour in palette.items():
+        shares = isinstance(colour, list) and len(colour) == 3 and all(isinstance(share, (int, float)) and 0 <= share <= 1 for share in colour)
+        if not shares:
+            raise wrong(f"palette.{name}", colour, "a colour: three numbers from 0 to 1")
 
 
 def _check_part(place: str, part: Any, names: set[str]) -> None:

@@ -21,6 +21,7 @@ from ..lines import doubts
 from ..lines import plan as lines_plan
 from ..paint import clicks as paint_clicks
 from ..paint import filling, given, painted, recolours, sheets
+from ..paint import palette as palettes
 from ..paint import plan as pl
 
 
@@ -50,6 +51,7 @@ def need_open(ob, project: dict[str, Any]) -> None:
 def draw(ob, project: dict[str, Any]) -> int:
     """Draws the paint of a document. Generated drawings of the layer are replaced, the artist's stay. Returns the number of frames."""
     fills, regions = read(project)
+    palettes.take(ob, project.get("palette", {}))
     changing = recolours_of(project)
     if changing:
         recolours.take(ob, changing)
@@ -96,9 +98,9 @@ def recolours_of(project: dict[str, Any]) -> list[Recolour]:
         raise Problem(str(error)) from error
 
 
-def palette(fills: list[dict[str, Any]], filled: list[dict[str, Any]]) -> dict[str, list[float]]:
-    """The look of each named colour of clicks and regions."""
-    return {each["name"]: each["colour"] for own in [*filled, *fills] for each in own["regions"] if "name" in each}
+def palette(ob, fills: list[dict[str, Any]], filled: list[dict[str, Any]]) -> dict[str, list[float]]:
+    """The look of each named colour: of the palette that the object came with, of clicks and of regions."""
+    return palettes.fields(ob) | {each["name"]: each["colour"] for own in [*filled, *fills] for each in own["regions"] if "name" in each}
 
 
 def _regions(ob, sheet: sheets.Sheet, mapping, fresh: Iterator[int]) -> list[dict[str, Any]]:

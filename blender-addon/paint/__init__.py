@@ -15,6 +15,7 @@ never written. Each region is one closed stroke: its outline, joined with those 
 `given`               clicks and regions of a document
 `bucket`              one click with the bucket
 `recolours`           materials that become others on some frames
+`palette`             colours of a document's palette, painted with or not
 `doubts`              which regions are in doubt, and where
 ====================  ==============================================================================
 

@@ -16,6 +16,12 @@ class RototoonRecolour(bpy.types.PropertyGroup):
     last: bpy.props.IntProperty(name="Last", description="The last frame, if it has one", default=0)
 
 
+class RototoonPaletteColour(bpy.types.PropertyGroup):
+    """A colour of the palette of a document."""
+
+    material: bpy.props.PointerProperty(name="Material", description="The material of the colour", type=bpy.types.Material)
+
+
 class FillSettings:
     """Settings of paint, in the property `rototoon` of every object."""
 
@@ -51,6 +57,11 @@ class FillSettings:
     )
     recolours: bpy.props.CollectionProperty(
         name="Recolours", description="Materials that become others on some frames, in their order. Recolour adds one", type=RototoonRecolour
+    )
+    palette: bpy.props.CollectionProperty(
+        name="Palette",
+        description="Colours that came with the palette of a document, whether something is painted with them or not",
+        type=RototoonPaletteColour,
     )
     show_fill_doubts: bpy.props.BoolProperty(
         name="Mark Doubtful Regions",

@@ -238,7 +238,8 @@ class Session:
         options["leave_out"] = _colours(leave_out)
         if frames is not None:
             options["frames"] = [int(frame) for frame in frames]
-        before = None if clicks is None else self.fills()
+        # The text, as clicks of other programs have fields that `fills` does not tell.
+        before = None if clicks is None else self._handle.give(handles.Text, "rototoon_session_document")
         if clicks is not None:
             self.set_fills(clicks)
         try:
@@ -248,7 +249,7 @@ class Session:
         except BaseException:
             # A session that was closed meanwhile has no document to mend.
             if before is not None and not self.closed:
-                self.set_fills(before)
+                self._handle.call("rototoon_session_set_document", *text(before))
             raise
         report = json.loads(told)
         missed, overruled = ([(own["frame"], own["click"]) for own in report[name]] for name in ("missed", "overruled"))

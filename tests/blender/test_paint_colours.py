@@ -120,4 +120,42 @@ def test_colours_keep_their_materials_in_documents(addon, painted, tmp_path):  #
     bpy.ops.rototoon.import_document(filepath=str(path))
     third = bpy.context.object
     assert set(by_material(addon, third)) == {"Fremd.001", "Paint 3366e6", "Paint ffffff"}
+    assert sorted(own.material.name for own in third.rototoon.palette) == ["Fremd.001", "Paint 3366e6", "Paint ffffff"]
     assert colour_at(addon, third, 3, places(3)[1][0]) == pytest.approx(SKIN, abs=1e-3)
+
+
+def test_colours_of_a_palette_stay_without_paint_of_them(addon, painted, tmp_path):  # noqa: F811
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    document["palette"] = {"Nacht": [0.0, 0.1, 0.2], **document["palette"], "Haar": [0.35, 0.2, 0.1]}
+    path.write_text(json.dumps(document))
+    bpy.ops.rototoon.import_document(filepath=str(path))
+    other = bpy.context.object
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    assert list(json.loads(path.read_text())["palette"].items()) == list(document["palette"].items())
+    # It is a colour to choose, and its name and its look are those of its material.
+    scripting = addon("scripting")
+    scripting.recolour(other, "Paint edc29e", "Nacht", first=4)
+    other.data.materials["Haar"].name = "Bart"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    written = json.loads(path.read_text())
+    assert set(written["palette"]) == {*document["palette"], "Bart"} - {"Haar"}
+    assert written["recolours"][0]["to"]["name"] == "Nacht"
+    # An object that gets another document keeps what it has, and each colour once.
+    bpy.ops.rototoon.import_document(filepath=str(path), into="ACTIVE")
+    assert sorted(own.material.name for own in other.rototoon.palette) == sorted(written["palette"])
+    bpy.data.materials.remove(bpy.data.materials["Bart"])
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    assert set(json.loads(path.read_text())["palette"]) == set(document["palette"]) - {"Haar"}
+
+
+def test_a_palette_is_checked_before_anything_changes(addon, painted, tmp_path):  # noqa: F811
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document, count = json.loads(path.read_text()), len(bpy.data.objects)
+    for palette, field in (({"Nacht": [0, 0]}, "palette.Nacht"), ({"Nacht": [0, 0, 2]}, "palette.Nacht"), ([], "palette")):
+        path.write_text(json.dumps(document | {"palette": palette}))
+        with pytest.raises(RuntimeError, match=f"{field}: found"):
+            bpy.ops.rototoon.import_document(filepath=str(path))
+    assert len(bpy.data.objects) == count

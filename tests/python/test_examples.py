@@ -101,8 +101,21 @@ def test_mattes(run, done, tmp_path):
     assert ended.returncode == 0, ended.stderr
     names = {path.name for path in (tmp_path / "mattes").iterdir()}
     assert len(names) == 2 * (LAST + 1) + 1 and "layers_0012.exr" in names and "group_0000.png" in names
-    assert json.loads((tmp_path / "mattes/layers.json").read_text()) == {"layers": ["=red", "blau ü"], "group": ["blau ü"]}
+    assert json.loads((tmp_path / "mattes/layers.json").read_text()) == {"layers": {"=red": "=red", "blau ü": "blau ü"}, "group": ["blau ü"]}
     assert run("mattes.py", out / "sh1/tracked.json", tmp_path / "other", "nobody").returncode != 0
+
+
+def test_the_list_of_mattes_has_the_names_in_the_files(run, season, tmp_path):
+    document = json.loads((season / "sh1/project.json").read_text())
+    document["parts"] = [dict(document["parts"][0], name=name) for name in ("arm.L", "arm_L", "arm:L", "leg.", "leg_ 2", "leg..")]
+    shot = tmp_path / "shot.json"
+    shot.write_text(json.dumps(document))
+    ended = run("mattes.py", shot, tmp_path / "mattes")
+    assert ended.returncode == 0, ended.stderr
+    layers = json.loads((tmp_path / "mattes/layers.json").read_text())["layers"]
+    assert layers == {"arm_L": "arm_L", "arm:L": "arm:L", "leg_ 2": "leg_ 2", "arm_L 2": "arm.L", "leg_": "leg.", "leg__": "leg.."}
+    written = (tmp_path / "mattes/layers_0000.exr").read_bytes()
+    assert all(f"{layer}.A\0".encode() in written for layer in layers)
 
 
 def test_a_folder_of_drawings(run, shelf, tmp_path):

@@ -167,6 +167,17 @@ def test_progress_can_cancel(film):
     assert shares[-1][0] == 1.0 and all(a <= b for (a, _), (b, _) in zip(shares[1:], shares[2:]))
 
 
+@pytest.mark.parametrize("options", [{"progress": lambda *_: False}, {"sensitivity": 99}])
+def test_clicks_of_other_programs_stay_as_they_were(film, options):
+    region = {"at": [30, 30], "colour": list(RED), "layer": "skin"}
+    asked = [{"frame": 0, "note": "by Anna", "regions": [region]}, {"frame": 3, "regions": []}]
+    with opened(film, fills=asked) as session:
+        before = session.document()
+        with pytest.raises((Cancelled, RototoonError)):
+            session.fill(CLICKS, **options)
+        assert session.document() == before and before["fills"] == asked
+
+
 def test_the_same_regions_on_any_number_of_threads(film):
     found = []
     for threads in (1, 3):

@@ -1,13 +1,18 @@
 """Children of a process that has used the library: forked and spawned, as `multiprocessing` makes them."""
 
 import array
+import json
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
+import rototoon
 from rototoon import Session, Strokes, fit_strokes
 
 LONG = 120.0
@@ -77,3 +82,46 @@ def test_a_session_goes_on_in_a_forked_child(session):
     assert done, "the child did not end"
     assert os.waitstatus_to_exitcode(status) == 0
     assert session.document() == before
+
+
+ENDING = """
+import atexit, json, sys, threading, time
+# Registered before those of the package, so called after them.
+atexit.register(lambda: print("solved at exit:", track(lambda *_: True).solved, flush=True))
+from rototoon import Cancelled, Session
+
+folder, began = sys.argv[1], threading.Event()
+document = json.loads(sys.stdin.read())
+
+def track(progress):
+    with Session.from_document(document, folder) as session:
+        return session.track(progress=progress)
+
+def shown(*_):
+    began.set()
+    time.sleep(0.2)
+
+def work():
+    while True:
+        try:
+            track(shown)
+        except Cancelled:
+            pass
+
+class Slow:
+    def __del__(self, sleep=time.sleep):
+        sleep(0.5)
+
+# The dictionary of this module lives as long as the thread.
+sys.slow = Slow()
+threading.Thread(target=work, daemon=True).start()
+assert began.wait(60)
+"""
+"""A program that ends while a daemon thread tracks. The end is slow, so a callback of the thread comes to its own end while Python ends."""
+
+
+def test_a_process_ends_well_while_a_daemon_thread_tracks(document, folder):
+    environment = {**os.environ, "PYTHONPATH": str(Path(rototoon.__file__).parents[1]), "ROTOTOON_CACHE": "none"}
+    command = [sys.executable, "-c", ENDING, str(folder)]
+    ended = subprocess.run(command, input=json.dumps(document), capture_output=True, text=True, env=environment, timeout=LONG, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, "solved at exit: 4\n", "")

@@ -9,6 +9,7 @@ from ...blender import guard
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...capture import document, snapping
+from ...common import kept
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
 from ...lines import drawings
@@ -148,7 +149,8 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
     def _add_paint(self, ob, written: dict) -> int:
         """Puts paint into a document. Returns the number of frames that have some."""
         fills, regions = filled.of(ob)
-        named = filled.palette(fills, regions)
+        # Files of earlier versions kept the palette with the fields that they did not know.
+        named = kept.fields(written.get("palette")) | filled.palette(ob, fills, regions)
         for name, value in (("palette", named), ("fills", fills), ("filled", regions), ("recolours", recolours.fields(ob))):
             if value:
                 written[name] = value

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Self
 
-from . import _bindings, library
+from . import _bindings, ending, library
 from .arrays import check_integers
 from .errors import Cancelled, RototoonError
 
@@ -386,6 +386,8 @@ def progress_callback(progress: Callable[[float, str], bool | None] | None) -> I
     raised: list[BaseException] = []
 
     def report(_user: int | None, fraction: float, step: int | None, length: int) -> int:
+        if must_end():
+            return 1
         try:
             # 0 and numpy's False cancel too. None is what a function without a result returns, so it does not.
             answer = progress(fraction, _copy(ctypes.c_void_p(step), length).decode())
@@ -394,10 +396,11 @@ def progress_callback(progress: Callable[[float, str], bool | None] | None) -> I
             raised.append(error)
             return 1
 
-    try:
-        yield _bindings.RototoonProgress(report)
-    except Cancelled:
-        if not raised:
-            raise
+    with ending.call() as must_end:
+        try:
+            yield _bindings.RototoonProgress(report)
+        except Cancelled:
+            if not raised:
+                raise
     if raised:
         raise raised[0]
