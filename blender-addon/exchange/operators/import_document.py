@@ -9,7 +9,7 @@ from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
 from ...common.wording import counted, listed
-from .. import drawn, files, filled, importing, known_files, places
+from .. import drawn, files, filled, importing, known_files, looks, places
 
 
 class _Scene:
@@ -87,16 +87,17 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             importing.need_open(ob, project)
             drawn.need_open(ob, project)
             filled.need_open(ob, project)
+            had, where = looks.of(ob), ""
             with stage.tried(ob, shot):
                 context.view_layer.update()
-                places.need(ob, project)
-            where = ""
+                places.need(ob, project, had)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
             view.leave_mode(context)
             ob, where = self._build(context, shot, name)
+            had = looks.Looks()
         context.view_layer.update()
-        importing.apply(ob, project)
+        importing.apply(ob, project, had)
         lines, paint = drawn.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
         known_files.note(ob, path, held)
