@@ -65,7 +65,7 @@ class Mapper:
             normal = (view.to_view @ matrix)[2, :3]
             normal = normal / np.linalg.norm(normal)
             plane = cameras.plane_of(self._points.get(index, np.zeros((0, 3))), normal)
-            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane)
+            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane, cameras.radius_of(ob))
 
 
 def view_of(ob: bpy.types.Object, size: tuple[int, int] | None = None) -> cameras.View:
