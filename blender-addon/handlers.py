@@ -10,7 +10,7 @@ from bpy.app.handlers import persistent
 
 from .blender import footage, guard, memo, movie
 from .blender.errors import Problem
-from .capture import arrivals, live, sessions, stand
+from .capture import arrivals, live, part_names, sessions, stand
 from .capture.operators.footage_base import used_folders
 from .lines import older_files
 from .style import clip_browser
@@ -24,6 +24,8 @@ def _loaded(*_args) -> None:
     movie.mark_used(used_folders())
     for ob in bpy.data.objects:
         older_files.mark(ob)
+        if not guard.refusal(ob, guard.SETTINGS):
+            part_names.remember(ob)
 
 
 @persistent
@@ -69,6 +71,7 @@ def _imported(context, *_args) -> None:
     for item in context.import_items:
         ob, library = item.id, item.source_library
         if isinstance(ob, bpy.types.Object) and library is not None and not guard.refusal(ob, guard.SETTINGS):
+            part_names.remember(ob)
             for name in _FIELDS:
                 _settle(ob, name, bpy.path.abspath(library.filepath))
 

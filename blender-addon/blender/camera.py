@@ -48,9 +48,13 @@ class View:
 class Mapping:
     """Mapping between footage pixels and layer points on one frame."""
 
-    def __init__(self, view: View, layer_to_world: np.ndarray, plane: tuple[np.ndarray, np.ndarray] | None = None):
-        """`plane` is a point and a normal in layer space. The default is the layer's XZ plane, Blender's front view."""
+    def __init__(
+        self, view: View, layer_to_world: np.ndarray, plane: tuple[np.ndarray, np.ndarray] | None = None, radius: float | None = None
+    ):
+        """`plane` is a point and a normal in layer space. The default is the layer's XZ plane, Blender's front view. `radius` is how large a radius of 1
+        is in the world (`radius_of`); without it, as large as lengths in the layer."""
         self.view = view
+        self._linear = layer_to_world[:3, :3] / (_mean_scale(layer_to_world) if radius is None else radius)
         self.to_view = view.to_view @ layer_to_world
         self.from_view = np.linalg.inv(self.to_view)
         self.point, self.normal = plane or (np.zeros(3), np.array([0.0, 1.0, 0.0]))
@@ -90,6 +94,12 @@ class Mapping:
         moving += direction * (((self.point - moving) @ self.normal) / along)[..., None]
         return moving
 
+    def radii(self, pixels: np.ndarray, half: np.ndarray | float) -> np.ndarray:
+        """The radii of lines through pixels (..., 2) that go `half` so many pixels to each side."""
+        pixels = np.asarray(pixels, np.float64)
+        beside = pixels + np.stack([half + 0 * pixels[..., 0], 0 * pixels[..., 0]], -1)
+        return np.linalg.norm((self.to_layer(beside) - self.to_layer(pixels)) @ self._linear.T, axis=-1)
+
     def _refuse_edge_on(self, along: np.ndarray, direction: np.ndarray) -> None:
         # The norm of every direction would cost more than everything else here. The largest coordinate is a bound for all.
         bound = 2.0 * np.abs(direction).max(initial=0.0)
@@ -97,6 +107,16 @@ class Mapping:
             return
         if (np.abs(along) <= 1e-9 * np.linalg.norm(direction, axis=-1)).any():
             raise Problem("The drawing plane is seen edge-on: turn the Grease Pencil object towards the camera")
+
+
+def radius_of(ob) -> float:
+    """How large a stroke's radius of 1 is in the world: Blender scales it with the object, and not with the layer."""
+    return _mean_scale(np.array(ob.matrix_world, np.float64))
+
+
+def _mean_scale(matrix: np.ndarray) -> float:
+    """The scale of a matrix as Blender takes it for widths: that of the diagonal."""
+    return float(np.linalg.norm(matrix[:3, :3].sum(1)) / math.sqrt(3))
 
 
 def plane_of(points: np.ndarray, view_normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -242,15 +244,30 @@ def source_of_clip(clip) -> Source:
 
 def background_source(camera) -> tuple[Source, object]:
     """The source of a camera's background, and its background image."""
-    shown = [entry for entry in camera.data.background_images if entry.show_background_image]
-    for entry in shown:
-        if entry.source == "IMAGE" and entry.image is not None:
-            return source_of_image(entry.image, entry.image_user), entry
-        if entry.source == "MOVIE_CLIP":
-            clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
-            if clip is not None:
-                return source_of_clip(clip), entry
+    for entry in camera.data.background_images:
+        source = _source_of_entry(entry) if entry.show_background_image else None
+        if source is not None:
+            return source, entry
     raise Problem(f'Camera "{camera.name}" has no background image: add one in its properties, Background Images')
+
+
+def backgrounds(camera) -> Iterator[tuple[Source, object]]:
+    """The sources of all of a camera's background images, and these images. Those that are shown come first; the others have their place all the same."""
+    for entry in sorted(camera.data.background_images, key=lambda entry: not entry.show_background_image):
+        with suppress(Problem):
+            source = _source_of_entry(entry)
+            if source is not None:
+                yield source, entry
+
+
+def _source_of_entry(entry) -> Source | None:
+    """The source of a background image; `None` if nothing was chosen for it."""
+    if entry.source == "IMAGE" and entry.image is not None:
+        return source_of_image(entry.image, entry.image_user)
+    if entry.source == "MOVIE_CLIP":
+        clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
+        return None if clip is None else source_of_clip(clip)
+    return None
 
 
 def bpy_scene_clip():

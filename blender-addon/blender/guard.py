@@ -39,6 +39,8 @@ def refusal(ob: bpy.types.Object, what: str = DRAWINGS) -> str:
         why = "" if owner is None else _of_another_file(owner, may_override=what == ANIMATION)
         if why:
             return why
+    if what == ANIMATION and ob.animation_data is not None and ob.animation_data.use_tweak_mode:
+        return f'An action strip of "{ob.name}" is in tweak mode, so it cannot get another action: leave it first (Tab in the Nonlinear Animation editor)'
     others = sharing(ob) if what == DRAWINGS else []
     if others:
         return (

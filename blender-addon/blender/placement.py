@@ -65,7 +65,7 @@ class Mapper:
             normal = (view.to_view @ matrix)[2, :3]
             normal = normal / np.linalg.norm(normal)
             plane = cameras.plane_of(self._points.get(index, np.zeros((0, 3))), normal)
-            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane)
+            self._mappings[index, frame] = cameras.Mapping(view, matrix, plane, cameras.radius_of(ob))
 
 
 def view_of(ob: bpy.types.Object, size: tuple[int, int] | None = None) -> cameras.View:
@@ -91,7 +91,7 @@ def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
-    """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits."""
+    """The placement of the camera's background image that has the object's footage; the default, which fits, if there is none."""
     entry = background_of(camera, ob)
     if entry is None:
         return cameras.Placement()
@@ -106,12 +106,8 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
 
 
 def background_of(camera: bpy.types.Object, ob: bpy.types.Object) -> bpy.types.CameraBackgroundImage | None:
-    """The camera's background image if it shows the object's footage."""
-    try:
-        source, entry = footage.background_source(camera)
-    except Problem:
-        return None
-    return entry if _shows(source, ob) else None
+    """The camera's background image that has the object's footage, shown or not; `None` if there is none."""
+    return next((entry for source, entry in footage.backgrounds(camera) if _shows(source, ob)), None)
 
 
 def _shows(source: footage.Source, ob: bpy.types.Object) -> bool:

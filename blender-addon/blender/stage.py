@@ -22,6 +22,8 @@ DISTANCE = 10.0
 """Distance of a new camera from the drawing plane."""
 _FOOTAGE = ("pattern", "movie", "first", "last", "width", "height", "fps", "hold_gaps", "frame_offset")
 """The settings that `assign` changes."""
+_RENDERED = {"MESH", "CURVE", "SURFACE", "META", "FONT", "CURVES", "POINTCLOUD", "VOLUME", "GREASEPENCIL"}
+"""Types of objects that can be seen in a render."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,9 @@ def tried(ob, shot: Shot) -> Iterator[None]:
         raise
 
 
-def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.types.Object:
-    """Makes a camera background or a reference image, and a Grease Pencil object with the footage, which becomes active."""
+def build(context, shot: Shot, plane: str, name: str, match_scene: bool, own_camera: bool = True) -> bpy.types.Object:
+    """Makes a camera background or a reference image, and a Grease Pencil object with the footage, which becomes active. A new camera becomes the
+    scene's with `own_camera`, or if the scene has none."""
     scene = context.scene
     if match_scene:
         _match(scene, shot)
@@ -78,7 +81,7 @@ def build(context, shot: Shot, plane: str, name: str, match_scene: bool) -> bpy.
     if plane == "REFERENCE":
         ob.rototoon.reference = _reference(context, shot, name)
     else:
-        camera = ob.rototoon.camera = _camera(context, shot, name)
+        camera = ob.rototoon.camera = _camera(context, shot, name, own_camera)
         _background(camera, shot)
         ob.matrix_world = _facing(scene, camera)
     layer = gp.layer(ob, ob.rototoon.contours_layer)
@@ -112,8 +115,15 @@ def _match(scene, shot: Shot) -> None:
         scene.frame_set(scene.frame_start)
 
 
-def _camera(context, shot: Shot, name: str):
-    """The scene's camera if it is free, otherwise a new one, which becomes the scene's."""
+def in_use(scene) -> bool:
+    """Whether a scene has something to render beside objects with footage: then its size, its frames and its camera are somebody's."""
+    if any(ob.type in _RENDERED and not ob.hide_render and not ob.rototoon.pattern and not _is_default_cube(ob) for ob in scene.objects):
+        return True
+    return scene.camera is not None and not _is_default(scene.camera) and not _users(scene)
+
+
+def _camera(context, shot: Shot, name: str, own: bool):
+    """The scene's camera if it is free, otherwise a new one. It becomes the scene's if it is its `own`, or the scene has none."""
     scene = context.scene
     if scene.camera is not None and _is_free(scene.camera, shot):
         return scene.camera
@@ -123,6 +133,8 @@ def _camera(context, shot: Shot, name: str):
     aside = 1.5 * WIDTH * sum(len(other.data.background_images) > 0 for other in scene.objects if other.type == "CAMERA")
     camera.matrix_world = Matrix.Translation((aside, -DISTANCE, 0)) @ Matrix.Rotation(math.pi / 2, 4, "X")
     collection_of(context).objects.link(camera)
+    if scene.camera is not None and not own:
+        return camera
     # Footage that was seen through the scene's camera is seen through the same camera afterwards.
     for ob in _users(scene):
         if ob.rototoon.plane == "CAMERA" and ob.rototoon.camera is None and not guard.refusal(ob, guard.SETTINGS):
@@ -170,16 +182,20 @@ def hide_default_cube(scene) -> bool:
     A cube that somebody has moved, scaled, edited or animated stays as it is.
     """
     cube = scene.objects.get("Cube")
-    if cube is None or cube.type != "MESH" or cube.library is not None or not cube.visible_get():
-        return False
-    corners = cube.data.vertices
-    untouched = len(corners) == 8 and abs(sum(abs(x) for v in corners for x in v.co) - CUBE) < 1e-4
-    touched = len(cube.modifiers) or cube.animation_data is not None or cube.parent is not None or cube.children
-    if not untouched or touched or cube.matrix_world != Matrix.Identity(4):
+    if cube is None or not cube.visible_get() or not _is_default_cube(cube):
         return False
     cube.hide_set(True)
     cube.hide_render = True
     return True
+
+
+def _is_default_cube(ob) -> bool:
+    if ob.name != "Cube" or ob.type != "MESH" or ob.library is not None:
+        return False
+    corners = ob.data.vertices
+    untouched = len(corners) == 8 and abs(sum(abs(x) for v in corners for x in v.co) - CUBE) < 1e-4
+    touched = len(ob.modifiers) or ob.animation_data is not None or ob.parent is not None or ob.children
+    return untouched and not touched and ob.matrix_world == Matrix.Identity(4)
 
 
 def load_sequence(shot: Shot):

@@ -75,13 +75,15 @@ def leave_mode(context) -> None:
             bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def look_through_camera(context) -> None:
-    """Shows what the scene's camera sees, as large as it fits between toolbar and sidebar."""
+def look_through_camera(context, camera: bpy.types.Object | None = None) -> None:
+    """Shows what a camera sees, as large as it fits between toolbar and sidebar. Without one it is the scene's."""
     with in_view(context) as area:
         if area is None:
             return
         space = area.spaces.active
-        space.use_local_camera = False
+        space.use_local_camera = camera is not None and camera != context.scene.camera
+        if space.use_local_camera:
+            space.camera = camera
         space.region_3d.view_perspective = "CAMERA"
         bpy.ops.view3d.view_center_camera()
         _between_bars(area, space.region_3d)

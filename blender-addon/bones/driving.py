@@ -165,6 +165,13 @@ def poses(ob, postures: np.ndarray, plane: Plane, move: bool, air: Sequence[bool
     return [made for made, _ in _posed(ob, postures, plane, shifts)]
 
 
+def pose(ob, matrices: dict[str, Matrix]) -> None:
+    """Gives bones the basis matrices that they have not yet."""
+    for bone in ob.pose.bones:
+        if bone.matrix_basis != matrices[bone.name]:
+            bone.matrix_basis = matrices[bone.name]
+
+
 def _lifts(ob, plane: Plane, low: list[float], air: Sequence[bool]) -> np.ndarray:
     """How far each posture is to be lifted so that its lower ankle is as high as at rest. `low` are the heights of the lower ankles."""
     bones, table = armatures.bones_of(ob), key_points.table_of(ob)

@@ -19,7 +19,7 @@ from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common import jobs, kept
 from ..common.wording import listed
-from . import absence, contours, corrections, ends, identity, snapping
+from . import absence, contours, corrections, ends, identity, part_names, snapping
 
 VERSION = 1
 
@@ -72,6 +72,7 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
         for part in found.parts
         if part.keys
     ]
+    document, _ = part_names.among(document, {part.name for part in found.parts if part.keys})
     made = Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern), settings.frame_offset)
     if results:
         _add_results(ob, made)

@@ -16,7 +16,7 @@ from ..blender import grease_pencil as gp
 from ..blender import hierarchy
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
-from . import closing, correspondence, likeness, sessions
+from . import closing, correspondence, likeness, part_names, sessions
 from .contours import Contours, Part, Stroke
 
 CLOSING_GAP = 0.05
@@ -352,7 +352,8 @@ def write_parts(ob, found: Contours) -> None:
 
 
 def drop_empty(ob, found: Contours) -> str:
-    """Removes parts without a stroke from the object's list of parts. Returns what is to be told of it; empty if there are none.
+    """Removes parts without a stroke from the object's list of parts, and limbs and marks with them. Returns what is to be told of it; empty if
+    there are none.
 
     For buttons only, whose message names the parts. Parts of which another layer has strokes stay: it may be a layer of contours with
     a new name.
@@ -371,7 +372,9 @@ def drop_empty(ob, found: Contours) -> str:
     settings.active_part = numbers.index(chosen) if chosen in numbers else min(active, max(len(numbers) - 1, 0))
     if not gone:
         return ""
-    return "; without a contour, and so no longer in the list: " + ", ".join(f'"{name}"' for _, name in gone)
+    lost = part_names.drop(ob, {name for _, name in gone})
+    told = "; without a contour, and so no longer in the list: " + ", ".join(f'"{name}"' for _, name in gone)
+    return told + (f"; gone with {'it' if len(gone) == 1 else 'them'}: {lost}" if lost else "")
 
 
 def _drawn_elsewhere(ob, found: Contours) -> set[int]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import closing, live
+from . import closing, live, part_names
 
 PRESETS = (
     (
@@ -72,6 +72,8 @@ def _named(part, _context) -> None:
     name = next(each for each in free if each not in taken)
     if part.name != name:
         part.name = name
+        return
+    part_names.renamed(part)
 
 
 class RototoonPart(bpy.types.PropertyGroup):
@@ -80,6 +82,7 @@ class RototoonPart(bpy.types.PropertyGroup):
     name: bpy.props.StringProperty(
         name="Name", description="Name of the part in documents and files of shapes. No other part of the object has it", update=_named
     )
+    known_as: bpy.props.StringProperty(description="Name by which fields of the object's document, such as limbs, know the part")
     number: bpy.props.IntProperty(name="Number", description="Number that the part's strokes carry")
     depth: bpy.props.FloatProperty(
         name="Depth",

@@ -11,18 +11,19 @@ from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
 from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, unseen, writing
 from . import files
+from .looks import Looks
 
 
-def apply(ob, project: dict[str, Any], material: int = 0) -> None:
-    """Replaces an object's contours by those of a checked document. The object's footage must be set before."""
+def apply(ob, project: dict[str, Any], looks: Looks | None = None) -> None:
+    """Replaces an object's contours by those of a checked document. The object's footage must be set before. `looks` are those that its parts had."""
     settings = ob.rototoon
     _empty(ob)
     settings.extra = files.unknown_of_document(project)
-    layer = gp.layer(ob, settings.contours_layer)
+    gp.layer(ob, settings.contours_layer)
     for number, entry in enumerate(project.get("parts", []), 1):
         _add_part(settings, number, entry)
     settings.next_number = len(settings.parts) + 1
-    _write_keys(ob, layer, project, material)
+    _write_keys(ob, project, looks or Looks())
     found = contours.read(ob)
     corrected = {frame for entry in project.get("parts", []) for name in ("pins", "centers") for frame in by_frame(entry.get(name))}
     mapper = document.mapper_of(ob, found, *(frame + settings.frame_offset for frame in corrected))
@@ -33,9 +34,10 @@ def apply(ob, project: dict[str, Any], material: int = 0) -> None:
             tracks[part.number], fixed[part.number] = track, fix
     if tracks:
         parts = [part for part in found.parts if part.keys]
-        block = writing.lay_out(0, parts, tracks, found, mapper, fixed)
-        writing.limit(block, ob, 0, found)
-        writing.write(gp.find_layer(ob, found.layer_names[0]), block, [])
+        for index, name in enumerate(found.layer_names):
+            block = writing.lay_out(index, parts, tracks, found, mapper, fixed)
+            writing.limit(block, ob, index, found)
+            writing.write(gp.find_layer(ob, name), block, [])
         unseen.note_pictures(ob, unseen.of_document(project))
     curves = _curves(project, settings.frame_offset)
     if curves:
@@ -69,31 +71,39 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
 
 
-def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
+def _write_keys(ob, project: dict[str, Any], looks: Looks) -> None:
     """Writes the artist's strokes. Farther parts come first, so that nearer ones are drawn over them."""
-    offset = ob.rototoon.frame_offset
-    drawn: dict[int, list[tuple[float, int, bool, np.ndarray]]] = {}
+    settings = ob.rototoon
+    drawn: dict[str, dict[int, list[tuple[float, int, dict[str, Any], np.ndarray]]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
-        for frame, points in by_frame(entry.get("keys")).items():
-            row = (float(entry.get("depth", 0.0)), number, bool(entry.get("closed", True)), np.asarray(points, np.float64))
-            drawn.setdefault(frame + offset, []).append(row)
-    mapper = placement.Mapper(ob, drawn, {}, [layer.name])
-    gp.make_frames(layer, sorted(drawn), gp.KEYFRAME)
-    drawings = gp.drawings(layer)
-    for frame, strokes in drawn.items():
-        strokes.sort(key=lambda row: row[:2])
-        rows = stroke_rows.Rows(np.array([len(points) for *_, points in strokes], np.int32))
-        points = np.concatenate([points for *_, points in strokes])
-        rows.values = {
-            "position": mapper.at(0, frame).to_layer(points).astype(np.float32),
-            "radius": gp.blank("radius", len(points)),
-            "opacity": gp.blank("opacity", len(points)),
-            "cyclic": np.array([closed for _, _, closed, _ in strokes]),
-            "material_index": np.full(len(strokes), material, np.int32),
-            gp.PART: np.array([number for _, number, _, _ in strokes], np.int32),
-            gp.CONTROL: np.concatenate([correspondence.identity(len(points)) for *_, points in strokes]),
-        }
-        stroke_rows.append(drawings[frame][0], rows)
+        frames = drawn.setdefault(looks.layer_of(entry["name"], settings.contours_layer), {})
+        for picture, points in by_frame(entry.get("keys")).items():
+            frames.setdefault(picture, []).append((float(entry.get("depth", 0.0)), number, entry, np.asarray(points, np.float64)))
+    for name, frames in drawn.items():
+        layer, offset = gp.find_layer(ob, name), settings.frame_offset
+        mapper = placement.Mapper(ob, [picture + offset for picture in frames], {}, [name])
+        gp.make_frames(layer, sorted(picture + offset for picture in frames), gp.KEYFRAME)
+        drawings = gp.drawings(layer)
+        for picture, strokes in frames.items():
+            strokes.sort(key=lambda row: row[:2])
+            stroke_rows.append(drawings[picture + offset][0], _rows(strokes, picture, mapper.at(0, picture + offset), looks))
+
+
+def _rows(strokes: list[tuple[float, int, dict[str, Any], np.ndarray]], picture: int, mapping, looks: Looks) -> stroke_rows.Rows:
+    """The strokes of a key drawing, with the looks that their parts had."""
+    rows = stroke_rows.Rows(np.array([len(points) for *_, points in strokes], np.int32), own=looks.own)
+    points = np.concatenate([points for *_, points in strokes])
+    rows.values = {
+        "position": mapping.to_layer(points).astype(np.float32),
+        "radius": gp.blank("radius", len(points)),
+        "opacity": gp.blank("opacity", len(points)),
+        "cyclic": np.array([bool(entry.get("closed", True)) for _, _, entry, _ in strokes]),
+        "material_index": np.zeros(len(strokes), np.int32),
+        gp.PART: np.array([number for _, number, _, _ in strokes], np.int32),
+        gp.CONTROL: np.concatenate([correspondence.identity(len(points)) for *_, points in strokes]),
+    }
+    rows.values |= looks.rows([(entry["name"], number, len(points)) for _, number, entry, points in strokes], picture)
+    return rows
 
 
 def _results(part: contours.Part, entry: dict[str, Any], mapper, offset: int):

@@ -11,27 +11,31 @@ from rototoon.documents import by_frame
 
 from ..blender.placement import Mapper
 from . import drawn, filled
+from .looks import Looks
 
-_CONTOURS, _SNAPPED, _LINES, _FILLS = range(4)
+_SNAPPED, _LINES, _FILLS = range(1, 4)
 
 
-def need(ob, project: dict[str, Any]) -> None:
-    """Raises a `Problem` if there is no camera, or a point has no place on the drawing plane. The object has the document's footage already."""
+def need(ob, project: dict[str, Any], looks: Looks) -> None:
+    """Raises a `Problem` if there is no camera, or a point has no place on the drawing plane. The object has the document's footage already. `looks` tell
+    the layers of its parts."""
     settings = ob.rototoon
-    found = [(layer, frame + settings.frame_offset, points) for layer, frame, points in _places(project)]
-    frames = {frame for _, frame, _ in found}
     names = [settings.contours_layer, settings.snapped_layer, settings.lines_layer, settings.fills_layer]
+    names += sorted({look.layer for look in looks.parts.values()} - {settings.contours_layer})
+    home = {entry["name"]: names.index(looks.layer_of(entry["name"], settings.contours_layer)) for entry in project.get("parts", [])}
+    found = [(layer, frame + settings.frame_offset, points) for layer, frame, points in _places(project, home)]
+    frames = {frame for _, frame, _ in found}
     # Contours are placed on the frames between their keys too.
     mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), {}, names)
     for layer, frame, points in found:
         mapper.at(layer, frame).to_layer(np.asarray(points, np.float64))
 
 
-def _places(project: dict[str, Any]) -> Iterator[tuple[int, int, Any]]:
+def _places(project: dict[str, Any], home: dict[str, int]) -> Iterator[tuple[int, int, Any]]:
     """Layer, picture number and pixels of all that a document has."""
     for entry in project.get("parts", []):
         for name in ("keys", "tracks"):
-            yield from ((_CONTOURS, frame, points) for frame, points in by_frame(entry.get(name)).items())
+            yield from ((home[entry["name"]], frame, points) for frame, points in by_frame(entry.get(name)).items())
         for frame, segments in by_frame(entry.get("curves")).items():
             yield from ((_SNAPPED, frame, path) for path in segments)
     film = drawn.checked(project)

@@ -102,9 +102,7 @@ def written(ob, content: st.Content, mapping, palette) -> dict[int, dict[str, An
         if fills[i]:
             stroke["fill"] = True
         elif own is not None and len(own) == len(line):
-            # The length of a pixel in the layer's units, at each point.
-            pixel = np.linalg.norm(mapping.to_layer(points + (1.0, 0.0)) - mapping.to_layer(points), axis=1)
-            stroke["widths"] = (2 * own / np.maximum(pixel, 1e-12)).round(4).tolist()
+            stroke["widths"] = (2 * own / np.maximum(mapping.radii(points, 1.0), 1e-12)).round(4).tolist()
         stroke["colour"] = (seen if fills[i] else inks)[i].clip(0, 1).round(4).tolist()
         if filled[i] and not fills[i]:
             stroke["fill_colour"] = seen[i].clip(0, 1).round(4).tolist()

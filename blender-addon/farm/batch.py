@@ -5,7 +5,7 @@
     rototoon-batch.js    the job type for Flamenco
     send_to_opencue.py   sends the job to OpenCue
     shots/NAME.json      a project document for each shot
-    sent.json            which object of which file each shot is, and the layers of its lines; the hash of each file
+    sent.json            which object of which file each shot is, its parts, and the layers of its lines; the hash of each file
     results/             where the results will be
 
 A file is only replaced if it is as it was written here. So nothing that somebody made or changed is lost.
@@ -90,7 +90,7 @@ def _need_no_others(before: Mapping[str, Any], blends: set[str]) -> None:
 def _listed(place: Path, name: str, shot: Mapping[str, Any]) -> dict[str, Any]:
     """What Collect Results needs to know of a shot."""
     entry = {"shot": name, "object": shot["object"], "blend": _relative(place, shot["blend"])}
-    return entry | {"lines": shot["lines"]} if "lines" in shot else entry
+    return entry | {name: shot[name] for name in ("parts", "lines") if name in shot}
 
 
 def shot_names(shots: Sequence[Mapping[str, Any]]) -> list[str]:

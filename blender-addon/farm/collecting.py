@@ -27,7 +27,7 @@ from ..capture import absence, contours, document, ends, exchanged, identity, se
 from ..capture.document import Reading
 from ..exchange import files
 from ..exchange.fields import wrong
-from . import batch
+from . import batch, same_parts
 
 RECORD = "batch.json"
 SAME = 0.01
@@ -50,6 +50,8 @@ class Result:
     """The document's file."""
     lines: dict[str, Any] | None = None
     """How its lines were sent: `layers`, `home`, `new` and `hold`. `None` if no lines were sent."""
+    numbers: dict[str, int] = field(default_factory=dict)
+    """The numbers that its parts had, by name."""
     held: set[int] = field(default_factory=set)
     """The pictures that are the same as the one before, where lines hold their drawings."""
 
@@ -63,6 +65,10 @@ class Taken:
     """By part the frames of results that were not taken, since the artist changed something."""
     hidden: dict[str, list[int]] = field(default_factory=dict)
     """By part the frames of results that were not taken, since the artist has said that the part is hidden there."""
+    missing: list[str] = field(default_factory=list)
+    """Parts of the results that the object has not."""
+    new: list[str] = field(default_factory=list)
+    """Parts that the results have not."""
     left: str = ""
     """Layers that were left as they were."""
     edited: list[int] = field(default_factory=list)
@@ -81,8 +87,9 @@ def results_of(folder: str, path: str) -> list[Result]:
         blend = entry.get("blend", "")
         # The farm may see the file under another path.
         if not path or not blend or os.path.basename(blend) == os.path.basename(path):
-            lines = _lines_of(entry, f"{place / batch.SENT}: shots[{index}].lines")
-            found.append(replace(_result(place / batch.RESULTS / str(entry.get("shot")), entry), lines=lines))
+            listed = f"{place / batch.SENT}: shots[{index}]"
+            lines, numbers = _lines_of(entry, f"{listed}.lines"), same_parts.numbers_of(entry, listed)
+            found.append(replace(_result(place / batch.RESULTS / str(entry.get("shot")), entry), lines=lines, numbers=numbers))
     return found
 
 
@@ -133,16 +140,17 @@ def _result(folder: Path, entry: Mapping[str, Any]) -> Result:
     return Result(shot, name, files.load(path), path=path)
 
 
-def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[float]:
-    """Takes a document's results into an object, in steps. Returns what was `Taken`."""
+def collecting(ob: bpy.types.Object, result: Mapping[str, Any], numbers: Mapping[str, int]) -> Iterator[float]:
+    """Takes a document's results into an object, in steps. `numbers` are those that its parts had. Returns what was `Taken`."""
     guard.need(ob)
     guard.need_some(tracking.contour_layers(ob), hidden=True)
     reading = document.read(ob)
     yield 0.0
     need_same_footage(ob, reading.document["footage"], result["footage"])
-    taken = Taken()
-    sent = {entry["name"]: entry for entry in result.get("parts", [])}
     now = {entry["name"]: entry for entry in reading.document["parts"]}
+    known = {part.name: part.number for part in reading.found.parts}
+    matched = same_parts.match(result.get("parts", []), numbers, now, known, same_spans)
+    sent, taken = matched.entries, Taken(missing=matched.left, new=matched.without)
     frames: dict[int, set[int]] = {}
     tracks: dict[int, writing.Track] = {}
     for part in reading.found.parts:
@@ -170,7 +178,7 @@ def collecting(ob: bpy.types.Object, result: Mapping[str, Any]) -> Iterator[floa
     _note_ends(ob, sent, now)
     # They were found in contours that are gone.
     exchanged.put(ob, [row for row in exchanged.rows_of(ob) if not any(frames.get(number) for number in row[:2])])
-    hidden = unseen.of_document(result)
+    hidden = {matched.names.get(name): pictures for name, pictures in unseen.of_document(result).items()}
     for item in ob.rototoon.parts:
         taken_here = frames.get(item.number)
         if taken_here:

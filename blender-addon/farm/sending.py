@@ -21,8 +21,8 @@ def shots_of(objects: Iterable[bpy.types.Object], path: str, lines: tracing.Want
     """Shots of all objects that can be tracked, traced or painted, and why others were left out. `path` is the Blender file; empty if it was
     never saved. Changes nothing.
 
-    A shot is plain data, so that it can come from another process: `object`, `blend`, `preset` and `document`; `trace` and `lines` as in
-    `tracing.sent` where there are lines; `paint`, the options of the step `fill`, where there is paint. An object has further shots where its
+    A shot is plain data, so that it can come from another process: `object`, `blend`, `preset` and `document`; `parts`, their numbers by name, where
+    there are contours; `trace` and `lines` as in `tracing.sent` where there are lines; `paint`, the options of the step `fill`, where there is paint. An object has further shots where its
     lines need them.
     """
     shots, left = [], []
@@ -40,7 +40,7 @@ def _contents(ob, lines: tracing.Wanted) -> tuple[list[dict[str, Any]], list[str
     found: list[dict[str, Any]] = []
     why, problems = "", []
     try:
-        found.append({"document": _document(ob)})
+        found.append({"document": _document(ob), "parts": {part.name: part.number for part in ob.rototoon.parts}})
     except (Problem, RototoonError) as problem:
         why = str(problem)
     traced, problem = _lines(ob, lines)

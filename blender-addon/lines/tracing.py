@@ -390,7 +390,7 @@ def rows_of(
             rows.values.setdefault(name, gp.blank(name, count))
     if not count:
         return rows
-    rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), places, mapping)
+    rows.values["radius"][:] = _radii(points, np.concatenate([stroke.widths for stroke in strokes]), mapping)
     _dress(rows, frame, strokes, shown, names, materials)
     return rows
 
@@ -423,9 +423,8 @@ def _dress(rows: stroke_rows.Rows, frame: int, strokes: list[Placed], shown: loo
             rows.values[name][span] = looks.of_own(found, name, kind, where)
 
 
-def _radii(points: np.ndarray, widths: np.ndarray, places: np.ndarray, mapping) -> np.ndarray:
-    """Radius of lines of a width in pixels, in units of the layer."""
+def _radii(points: np.ndarray, widths: np.ndarray, mapping) -> np.ndarray:
+    """Radius of lines of a width in pixels."""
     if not np.isfinite(widths).any():
         return gp.blank("radius", len(points))
-    half = np.nan_to_num(widths, nan=2.0) / 2
-    return np.linalg.norm(mapping.to_layer(points + np.stack([half, 0 * half], 1)) - places, axis=1)
+    return mapping.radii(points, np.nan_to_num(widths, nan=2.0) / 2)

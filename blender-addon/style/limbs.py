@@ -19,7 +19,7 @@ from rototoon.style import BODIES, Skeleton
 from ..blender import grease_pencil as gp
 from ..blender import placement, selection
 from ..blender.errors import Problem
-from ..capture import document
+from ..capture import document, part_names
 from ..common import kept
 from . import bodies, carried
 
@@ -183,10 +183,14 @@ def body_name(ob) -> str:
     return name.title() if name in BODIES else name
 
 
-def needed(ob) -> None:
-    """Raises a `Problem` if an object has no limbs."""
+def needed(ob, project: dict[str, Any]) -> str:
+    """Raises a `Problem` if an object has no limbs, or one on a part that its document `project` has not. Returns what else names such a part."""
     if not defined(ob):
         raise Problem(f'"{ob.name}" has no limbs: draw lines across them on the layer "{LAYER}", then Define Limbs')
+    _, lost = part_names.among(_extra(ob), {part["name"] for part in project["parts"]})
+    if len(project.get("limbs", [])) < len(defined(ob)):
+        raise Problem(f"{part_names.listed(lost)}: on a part without contours; press Define Limbs, which makes limbs from the lines on \"{LAYER}\"")
+    return f"without effect, since a part has no contours: {part_names.listed(lost)}" if lost else ""
 
 
 def _lines(ob) -> dict[int, dict[int, np.ndarray]]:

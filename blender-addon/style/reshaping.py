@@ -37,12 +37,14 @@ class Drawing:
     """The document of the drawing: its contours on one frame, with limbs."""
     frame: int
     """The drawing's frame in the scene."""
+    idle: str
+    """Which marks have no effect, as a warning; empty if all have."""
 
 
 def begin(ob, frame: int) -> Drawing:
     """The drawing at a frame: the last frame up to it on which every part has a key."""
     reading = document.read(ob)
-    limbs.needed(ob)
+    idle = limbs.needed(ob, reading.document)
     offset = ob.rototoon.frame_offset
     keys = [sorted(part.keys) for part in reading.found.parts if part.keys]
     known = {number for frames in keys for number in frames}
@@ -60,7 +62,7 @@ def begin(ob, frame: int) -> Drawing:
             part.pop(name, None)
     # The drawing's key is the artist's, whatever an imported document says.
     project.pop("reshaped", None)
-    return Drawing(ob.session_uid, reading.document, project, rest)
+    return Drawing(ob.session_uid, reading.document, project, rest, idle)
 
 
 @dataclass

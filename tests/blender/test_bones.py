@@ -345,3 +345,60 @@ def test_undo_takes_the_keys_back(addon, tmp_path):
     assert ob.animation_data.action.name == "RigAction" and len(bpy.data.actions) == 1 and len(ob.rototoon.bones) == 17
     bpy.ops.ed.undo()
     assert len(bpy.data.objects["Rig"].rototoon.bones) == 0
+
+
+def hips(ob, frames):
+    """Where the hips are on frames, along X."""
+    found = []
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        found.append(ob.pose.bones["hips"].head.x)
+    return found
+
+
+def test_driven_again_the_motion_begins_where_it_did(addon, tmp_path):
+    put(addon, tmp_path, walk(addon))
+    bpy.context.scene.render.fps = 24
+    ob = armature()
+    foot = ob.pose.bones["foot.L"]
+    for frame, turn in ((1, 0.5), (8, 1.5)):
+        foot.rotation_quaternion = Euler((turn, 0, 0)).to_quaternion()
+        foot.keyframe_insert("rotation_quaternion", frame=frame)
+    drive = {"content": "boy", "motion": "walk", "folder": str(tmp_path), "view": "FRONT", "start": 1}
+    frames = (1, 4, 8)
+    bpy.context.scene.frame_set(8)
+    bpy.ops.rototoon.drive_bones(**drive)
+    assert bpy.context.scene.frame_current == 8
+    assert foot.rotation_quaternion.to_euler().x == pytest.approx(0.5, abs=1e-5), "feet keep the pose of the start"
+    first = hips(ob, frames)
+    for playhead in (8, 4, 1):
+        bpy.context.scene.frame_set(playhead)
+        bpy.ops.rototoon.drive_bones(**drive)
+        assert hips(ob, frames) == pytest.approx(first, abs=1e-5)
+
+
+def test_an_action_is_not_replaced_in_tweak_mode(addon, tmp_path):
+    put(addon, tmp_path, walk(addon))
+    ob = armature()
+    drive = {"content": "boy", "motion": "walk", "folder": str(tmp_path), "view": "FRONT"}
+    bpy.ops.rototoon.drive_bones(**drive)
+    data = ob.animation_data
+    track = data.nla_tracks.new()
+    track.strips.new("walk", 1, data.action)
+    data.action = None
+    track.select = True
+    data.use_tweak_mode = True
+    assert data.use_tweak_mode
+    actions = len(bpy.data.actions)
+    with pytest.raises(RuntimeError, match="in tweak mode"):
+        bpy.ops.rototoon.drive_bones(**drive)
+    assert len(bpy.data.actions) == actions
+    data.use_tweak_mode = False
+    assert bpy.ops.rototoon.drive_bones(**drive) == {"FINISHED"}
+
+
+def test_a_rig_in_rest_position_makes_no_clip(addon, tmp_path):
+    ob = armature()
+    ob.data.pose_position = "REST"
+    with pytest.raises(RuntimeError, match='"Rig" is in Rest Position'):
+        bpy.ops.rototoon.save_clip_from_armature(character="rig", motion="wave", folder=str(tmp_path))

@@ -491,3 +491,10 @@ def test_place_and_scale_may_be_given(addon, film, delivered):
     bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
     assert "scaled by 2 and moved by 16.00, 16.00 px" in said(addon).text
     assert away(pixels(addon, film)[8], before[9]) < 0.5
+
+
+def test_footage_that_is_not_shown_gives_way_too(addon, film, delivered):
+    film.rototoon.camera.data.background_images[0].show_background_image = False
+    assert bpy.ops.rototoon.conform(filepath=delivered, **GIVEN) == {"FINISHED"}
+    (entry,) = film.rototoon.camera.data.background_images
+    assert entry.image.filepath.endswith("new_1001.png") and not entry.show_background_image

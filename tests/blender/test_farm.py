@@ -330,3 +330,47 @@ def test_a_result_without_tracks_is_named(addon, sent, tmp_path):
     path.write_text(json.dumps(document))
     collect(tmp_path)
     assert "the results have no contour beside your keys" in last_report(addon).text
+
+
+def moved(addon, ob, before):
+    """How far the contours of all parts have moved to the right on a frame between the keys, by number."""
+    now = places(addon, ob, 5)
+    return {number: float(np.mean(now[number] - before[number], axis=0)[0]) for number in before}
+
+
+@pytest.mark.parametrize("listed", [True, False])
+def test_parts_with_other_names_get_their_results(addon, sent, tmp_path, listed):
+    first, second = sent.rototoon.parts
+    if not listed:
+        # An older version did not list numbers.
+        file = tmp_path / "farm/sent.json"
+        known = json.loads(file.read_text())
+        del known["shots"][0]["parts"]
+        file.write_text(json.dumps(known))
+    before, old = places(addon, sent, 5), first.name
+    first.name, second.name = "boot", old
+    assert collect(tmp_path) == {"FINISHED"}
+    assert last_report(addon).kind == "INFO"
+    assert moved(addon, sent, before) == pytest.approx(dict.fromkeys(before, 2.0), abs=1e-3)
+
+
+def test_a_part_with_another_name_and_key_is_named(addon, sent, tmp_path):
+    part = sent.rototoon.parts[0]
+    shots.move(addon, sent, 1, part.number, (5.0, 0.0))
+    part.name = "boot"
+    collect(tmp_path)
+    report = last_report(addon)
+    assert report.kind == "WARNING" and 'stays as it is: "boot" on 2 to 8' in report.text
+
+
+def test_parts_that_are_gone_or_new_are_named(addon, sent, tmp_path):
+    gone, number = sent.rototoon.parts[1].name, sent.rototoon.parts[1].number
+    gp = addon("blender.grease_pencil")
+    for handle, _ in gp.drawings(shots.layer_of(sent)).values():
+        numbers = gp.value(handle, gp.PART, len(gp.offsets(handle)) - 1)
+        handle.remove_strokes(indices=np.flatnonzero(numbers == number).tolist())
+    shots.draw(addon, sent, 1, [np.array([[100.0, 20], [130, 22], [128, 60], [104, 55]])])
+    collect(tmp_path)
+    text = last_report(addon).text
+    assert f'has no such parts any more, so their results were left out: "{gone}"' in text
+    assert 'has parts that are not in the results: "Part 3"; press Track' in text

@@ -342,3 +342,42 @@ def test_import_works_in_every_mode(addon, fake, tmp_path):
     assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json")) == {"FINISHED"}
     assert bpy.context.object != ob and bpy.context.mode == "OBJECT"
     assert len(bpy.context.object.rototoon.parts) == len(ob.rototoon.parts) == 2
+
+
+@pytest.fixture
+def shot_in_use(tmp_path):
+    """The scene of somebody else's shot with a camera that moves."""
+    shots.draw_sequence(tmp_path)
+    scene = bpy.context.scene
+    scene.render.resolution_x, scene.render.resolution_y = 1920, 1080
+    scene.frame_start, scene.frame_end = 101, 240
+    scene.frame_set(200)
+    scene.camera = bpy.data.objects.new("Shot Cam", bpy.data.cameras.new("Shot Cam"))
+    scene.collection.objects.link(scene.camera)
+    scene.camera.keyframe_insert("location", frame=101)
+    return scene
+
+
+def settings_of(scene):
+    return scene.render.resolution_x, scene.render.resolution_y, scene.frame_start, scene.frame_end, scene.frame_current, scene.camera.name
+
+
+def test_import_leaves_the_scene_of_another_shot(addon, shot_in_use, tmp_path):
+    (tmp_path / "in.json").write_text(json.dumps(project(tmp_path)))
+    before = settings_of(shot_in_use)
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "in.json")) == {"FINISHED"}
+    assert settings_of(shot_in_use) == before
+    ob = bpy.context.object
+    text = addon("scripting").take_reports()[-1].text
+    assert ob.rototoon.camera.name == "in Camera" and 'it is seen through a camera of its own, "in Camera"' in text and "pixels now" not in text
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "out.json"))
+    assert np.allclose(json.loads((tmp_path / "out.json").read_text())["parts"][0]["keys"]["0"], shots.square(0), atol=2e-3)
+
+
+def test_import_says_what_is_other_in_the_scene(addon, shot_in_use, tmp_path):
+    (tmp_path / "in.json").write_text(json.dumps(project(tmp_path)))
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "in.json"), match_scene=True) == {"FINISHED"}
+    assert settings_of(shot_in_use) == (160, 90, 101, 109, 101, "in Camera")
+    text = addon("scripting").take_reports()[-1].text
+    for said in ('through a new camera, "in Camera"', "the scene has 160x90 pixels now, before 1920x1080", "the frames 101 to 109 now, before 101 to 240"):
+        assert said in text, text

@@ -301,3 +301,29 @@ def test_a_scene_with_other_footage_keeps_its_size_and_says_so(addon, tmp_path):
     assert (bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y) == (width, height)
     bpy.ops.rototoon.setup(filepath=str(tmp_path / "wide_1.png"), match_scene=False)
     assert "the scene keeps" not in reports.take()[-1].text
+
+
+def test_the_place_of_footage_in_the_background_is_known_though_it_is_not_shown(addon, tmp_path):
+    ob = shots.set_up(tmp_path)
+    placement, data = addon("blender.placement"), bpy.context.scene.camera.data
+    entry = data.background_images[0]
+    entry.scale, entry.offset = 0.8, (0.05, 0.02)
+
+    def corner():
+        return placement.Mapper(ob, [1], {}, ["Contours"]).at(0, 1).to_layer(np.array([[0.0, 0.0]]))[0]
+
+    expected = corner()
+    entry.show_background_image = False
+    assert np.allclose(corner(), expected)
+    # A still of the layout before the footage in the list.
+    layout = bpy.data.images.new("layout", 8, 8)
+    layout.filepath_raw, layout.file_format = str(tmp_path / "layout.png"), "PNG"
+    layout.save()
+    more = data.background_images.new()
+    entry.show_background_image = True
+    more.image, entry.image = entry.image, bpy.data.images.load(layout.filepath_raw)
+    more.scale, more.offset, entry.scale, entry.offset = 0.8, (0.05, 0.02), 1.0, (0.0, 0.0)
+    assert np.allclose(corner(), expected)
+    # Of two that have the footage, the one that is shown counts.
+    entry.image, entry.show_background_image = more.image, False
+    assert np.allclose(corner(), expected)

@@ -43,6 +43,23 @@ def test_radius_and_material_follow_the_ink(addon, traced):
     assert gp.find_layer(traced, "Lines").use_lights is False
 
 
+def test_lines_on_scaled_layers_and_objects_are_as_wide_as_the_ink(addon, film, tmp_path):
+    import json
+
+    layer, found = film.data.layers.new("Lines"), []
+    for on_layer, on_object in ((1.0, 1.0), (2.0, 1.0), (1.0, 2.0)):
+        layer.scale, film.scale = [on_layer] * 3, [on_object] * 3
+        bpy.context.view_layer.update()
+        bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+        bpy.ops.rototoon.export_document(filepath=str(tmp_path / "lines.json"))
+        strokes = json.loads((tmp_path / "lines.json").read_text())["traced"][0]["strokes"]
+        found.append((np.median(attribute(addon, film, "Lines", 1, "radius")), np.median(np.concatenate([stroke["widths"] for stroke in strokes]))))
+    radii, widths = np.transpose(found)
+    # Blender draws a radius at the object's scale.
+    assert radii == pytest.approx(radii[0] * np.array([1.0, 1.0, 0.5]), rel=1e-3)
+    assert widths == pytest.approx(widths[0], rel=1e-3)
+
+
 def test_one_frame_and_a_range_join_what_is_there(addon, film):
     scene = bpy.context.scene
     scene.frame_set(2)

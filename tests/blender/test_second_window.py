@@ -2,6 +2,7 @@
 
 import bpy
 import pytest
+import shots
 from test_strokes import add, circle, content, drawing_object, wave
 from test_tween import figure, frames, keyed, move
 
@@ -87,3 +88,18 @@ def test_a_key_far_from_the_work_is_no_matter(addon, meanwhile):
     bpy.context.scene.frame_set(3)
     bpy.ops.rototoon.in_between(spacing="LINEAR", frames="CURRENT")
     assert list(frames(addon, ob)) == [*range(1, 10), 13, 17]
+
+
+@pytest.mark.parametrize("source", ["file", "camera", "reference"])
+def test_footage_goes_to_the_object_that_was_active_at_the_beginning(addon, meanwhile, tmp_path, source):
+    ob = shots.set_up(tmp_path, plane="REFERENCE" if source == "reference" else "CAMERA")
+    other = drawing_object(addon)
+    other.rototoon.pattern = "/other/%04d.png"
+    if source == "reference":
+        ob.rototoon.reference.select_set(True)
+    ob.rototoon.pattern, bpy.context.view_layer.objects.active = "", ob
+    name = f"footage_from_{source}"
+    meanwhile(f"capture.operators.{name}", f"ROTOTOON_OT_{name}", lambda: setattr(bpy.context.view_layer.objects, "active", other))
+    given = {"filepath": str(tmp_path / "frames/shot_003.png")} if source == "file" else {}
+    assert getattr(bpy.ops.rototoon, name)(**given) == {"FINISHED"}
+    assert ob.rototoon.pattern.endswith("shot_%03d.png") and other.rototoon.pattern == "/other/%04d.png"

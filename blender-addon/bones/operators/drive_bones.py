@@ -6,6 +6,7 @@ from rototoon.style import skeleton_of, stance_of
 
 from ...blender import actions, armatures, preferences
 from ...blender.errors import Problem
+from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnArmature
 from ...style.clip_library import clips_of, folder_of
@@ -59,15 +60,20 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
     def finish(self, context, work) -> str:
         (clip, fps), ob, scene = work.result, self._ob, context.scene
         postures = np.array(clip["points"], np.float64)
-        plane = driving.Plane.of(ob, scene, self.view)
-        rig, mirrored = driving.looks(ob, plane), self.mirror == "on"
         one = {key: value for key, value in self._file.items() if key != "clips"} | {"clips": [clip]}
-        stance = stance_of(one)
-        if self.mirror == "auto":
-            mirrored = None not in (rig, stance.looks) and rig != stance.looks
-        if mirrored:
-            postures = driving.mirrored(postures)
-        found = driving.poses(ob, postures, plane, self.move, stance.air)
+        stance, mirrored = stance_of(one), self.mirror == "on"
+        with kept(scene):
+            # The motion begins with the pose there, wherever the playhead is.
+            scene.frame_set(self.start)
+            plane = driving.Plane.of(ob, scene, self.view)
+            rig = driving.looks(ob, plane)
+            if self.mirror == "auto":
+                mirrored = None not in (rig, stance.looks) and rig != stance.looks
+            if mirrored:
+                postures = driving.mirrored(postures)
+            found = driving.poses(ob, postures, plane, self.move, stance.air)
+            at_start = {bone.name: bone.matrix_basis.copy() for bone in ob.pose.bones}
+        driving.pose(ob, at_start)
         frames = self.start + np.arange(len(postures)) * scene.render.fps / scene.render.fps_base / fps
         curves = driving.channels(ob, found, self.move)
         manner = f" as {self.style}" if self.style else ""

@@ -3,6 +3,7 @@
 import bpy
 
 from ...blender import armatures, guard
+from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnArmature
 from ...style import clip_browser, clip_library
@@ -35,6 +36,8 @@ class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.typ
         self._ob, self._postures = context.object, []
         self._folder = folder_of(self._ob, self.folder)
         key_points.table_of(self._ob)
+        if self._ob.data.pose_position == "REST":
+            raise Problem(f'"{self._ob.name}" is in Rest Position, so its bones do not move: choose Pose Position in the armature\'s properties')
         frames = range(self.first, self.last + 1)
         frames = frames if self.last > self.first else armatures.range_of(self._ob, context.scene)
         return jobs.Stepper(key_points.sample(self._ob, frames, self.view, self._postures), "reading poses")

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 import bpy
 
-from ...blender import footage, movie, preferences, stage
+from ...blender import footage, guard, movie, preferences, stage
 from ...blender.errors import Problem
 from ...common import jobs
-from ...common.operators import Long
+from ...common.operators import Long, OnDrawing
 from ...common.wording import counted
 
 
@@ -94,7 +94,18 @@ def described(shot: stage.Shot) -> str:
     return f"{name}: {count} pictures of {shot.width}x{shot.height}, the first on frame {shot.frame_of_first}"
 
 
-def assign_to_active(context, shot: stage.Shot) -> str:
-    """Sets the footage of the active object. Returns a message."""
-    stage.assign(context.object, shot)
-    return described(shot)
+class FootageOfActive(FootageOperator, OnDrawing):
+    """Sets the footage of the object that is active when the operator begins: while a movie is read, another window may make another one active."""
+
+    changes = guard.SETTINGS
+
+    def begin(self, context):
+        """As `FootageOperator.begin`."""
+        self._ob = context.object
+        return super().begin(context)
+
+    def assign(self, shot: stage.Shot) -> str:
+        """Sets the footage. Returns a message."""
+        guard.need(self._ob, self.changes)
+        stage.assign(self._ob, shot)
+        return described(shot)

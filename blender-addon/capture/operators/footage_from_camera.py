@@ -2,18 +2,16 @@
 
 import bpy
 
-from ...blender import footage, guard, placement
+from ...blender import footage, placement
 from ...blender.errors import Problem
-from ...common.operators import OnDrawing
-from .footage_base import FootageOperator, assign_to_active
+from .footage_base import FootageOfActive
 
 
-class ROTOTOON_OT_footage_from_camera(FootageOperator, OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_footage_from_camera(FootageOfActive, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_camera"
     bl_label = "Footage from Camera"
     bl_description = "Use the image sequence, movie or clip in the camera's background, with its timing"
     bl_options = {"REGISTER", "UNDO"}
-    changes = guard.SETTINGS
 
     @classmethod
     def poll(cls, context):
@@ -35,8 +33,9 @@ class ROTOTOON_OT_footage_from_camera(FootageOperator, OnDrawing, bpy.types.Oper
         return footage.background_source(camera)[0]
 
     def apply(self, context, shot):
-        context.object.rototoon.plane = "CAMERA"
-        return assign_to_active(context, shot)
+        said = self.assign(shot)
+        self._ob.rototoon.plane = "CAMERA"
+        return said
 
 
 CLASSES = (ROTOTOON_OT_footage_from_camera,)

@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import bpy
 
-from ...blender import footage, guard
+from ...blender import footage
 from ...blender.errors import Problem
-from ...common.operators import OnDrawing
-from .footage_base import FootageOperator, assign_to_active
+from .footage_base import FootageOfActive
 
 FILTER = "*.png;*.jpg;*.jpeg;*.tif;*.tiff;*.bmp;*.webp;*.exr;" + ";".join("*" + end for end in sorted(footage.MOVIES))
 
@@ -67,15 +66,14 @@ class FilePicker(PictureFile):
         self.layout.prop(self, "hold_gaps")
 
 
-class ROTOTOON_OT_footage_from_file(FilePicker, FootageOperator, OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_footage_from_file(FilePicker, FootageOfActive, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_file"
     bl_label = "Footage from File"
     bl_description = "Choose one picture of the footage, and the sequence around it is found. Movies work too"
     bl_options = {"REGISTER", "UNDO"}
-    changes = guard.SETTINGS
 
     def apply(self, context, shot):
-        return assign_to_active(context, self.timed(context, shot))
+        return self.assign(self.timed(context, shot))
 
 
 CLASSES = (ROTOTOON_OT_footage_from_file,)

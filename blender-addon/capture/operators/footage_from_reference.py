@@ -2,10 +2,9 @@
 
 import bpy
 
-from ...blender import footage, guard
+from ...blender import footage
 from ...blender.errors import Problem
-from ...common.operators import OnDrawing
-from .footage_base import FootageOperator, assign_to_active
+from .footage_base import FootageOfActive
 
 
 def reference_image(context):
@@ -16,12 +15,11 @@ def reference_image(context):
     return context.object.rototoon.reference
 
 
-class ROTOTOON_OT_footage_from_reference(FootageOperator, OnDrawing, bpy.types.Operator):
+class ROTOTOON_OT_footage_from_reference(FootageOfActive, bpy.types.Operator):
     bl_idname = "rototoon.footage_from_reference"
     bl_label = "Footage from Reference Image"
     bl_description = "Use the image of the selected reference image (an empty that shows an image), with its timing"
     bl_options = {"REGISTER", "UNDO"}
-    changes = guard.SETTINGS
 
     @classmethod
     def poll(cls, context):
@@ -39,9 +37,9 @@ class ROTOTOON_OT_footage_from_reference(FootageOperator, OnDrawing, bpy.types.O
         return footage.source_of_image(self._empty.data, self._empty.image_user)
 
     def apply(self, context, shot):
-        settings = context.object.rototoon
+        said, settings = self.assign(shot), self._ob.rototoon
         settings.plane, settings.reference = "REFERENCE", self._empty
-        return assign_to_active(context, shot)
+        return said
 
 
 CLASSES = (ROTOTOON_OT_footage_from_reference,)

@@ -83,7 +83,7 @@ def look_at_footage(context, ob) -> None:
         return
     if settings.camera is not None and context.scene.camera is None:
         context.scene.camera = settings.camera
-    view.look_through_camera(context)
+    view.look_through_camera(context, settings.camera)
 
 
 def _name(shot: stage.Shot) -> str:

@@ -9,7 +9,24 @@ from ...blender.errors import Problem
 from ...capture import sessions
 from ...common.operators import Guarded
 from ...common.wording import counted, listed
-from .. import drawn, files, filled, importing, known_files, places
+from .. import drawn, files, filled, importing, known_files, looks, places
+
+
+class _Scene:
+    """A scene's camera, size and frames."""
+
+    def __init__(self, scene):
+        render = scene.render
+        self.camera, self.size, self.frames = scene.camera, f"{render.resolution_x}x{render.resolution_y}", f"{scene.frame_start} to {scene.frame_end}"
+
+    def changes(self, scene, ob) -> str:
+        """What is other now, and through which camera an object is seen if that is not the scene's, or new."""
+        now, camera, said = _Scene(scene), ob.rototoon.camera, ""
+        if self.camera is not None and camera != self.camera:
+            said += f'; it is seen through {"a new camera" if now.camera == camera else "a camera of its own"}, "{camera.name}"'
+        if now.size != self.size:
+            said += f"; the scene has {now.size} pixels now, before {self.size}"
+        return said + (f"; the scene has the frames {now.frames} now, before {self.frames}" if now.frames != self.frames else "")
 
 
 class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
@@ -36,9 +53,18 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         description="Show picture n on frame n, instead of the first picture on the scene's first frame",
         default=False,
     )
+    match_scene: bpy.props.BoolProperty(
+        name="Match Scene",
+        description="Give the scene the footage's size, frames and camera, for a new object. If it is not given, only a scene that has no camera and nothing to "
+        "render beside footage gets them",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
 
     def invoke(self, context, _event):
         """Called by Blender: opens the file browser. A file that was dropped into the window is taken at once."""
+        if not self.properties.is_property_set("match_scene"):
+            self.match_scene = not stage.in_use(context.scene)
         if self.filepath:
             return self.execute(context)
         context.window_manager.fileselect_add(self)
@@ -61,21 +87,30 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
             importing.need_open(ob, project)
             drawn.need_open(ob, project)
             filled.need_open(ob, project)
+            had, where = looks.of(ob), ""
             with stage.tried(ob, shot):
                 context.view_layer.update()
-                places.need(ob, project)
+                places.need(ob, project, had)
         else:
             name = os.path.splitext(os.path.basename(path))[0]
             view.leave_mode(context)
-            ob = stage.build(context, shot, "CAMERA", name, match_scene=True)
+            ob, where = self._build(context, shot, name)
+            had = looks.Looks()
         context.view_layer.update()
-        importing.apply(ob, project)
+        importing.apply(ob, project, had)
         lines, paint = drawn.draw(ob, project), filled.draw(ob, project)
         sessions.drop(ob)
         known_files.note(ob, path, held)
         ob.data.update_tag()
-        where = f', in the new object "{ob.name}"' if self.into == "NEW" else ""
         return f"{' and '.join(self._said(ob, lines, paint))} from {os.path.basename(path)}{where}"
+
+    def _build(self, context, shot: stage.Shot, name: str):
+        """The new object, and what is to be told of it and of the scene."""
+        scene = context.scene
+        match = self.match_scene if self.properties.is_property_set("match_scene") else not stage.in_use(scene)
+        before = _Scene(scene)
+        ob = stage.build(context, shot, "CAMERA", name, match, own_camera=match)
+        return ob, f', in the new object "{ob.name}"{before.changes(scene, ob)}'
 
     def _said(self, ob, lines, paint: int) -> list[str]:
         """What came in, for the message."""

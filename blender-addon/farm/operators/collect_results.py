@@ -84,7 +84,7 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         """Takes contours, lines and paint in, each though the others could not be taken. Returns why something was not."""
         works = []
         if result.document.get("parts"):
-            works.append((collecting.collecting(ob, result.document), self._count_contours))
+            works.append((collecting.collecting(ob, result.document, result.numbers), self._count_contours))
         if result.lines:
             works.append((tracing.taking(ob, result), self._count_lines))
         if result.document.get("filled"):
@@ -118,13 +118,23 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
             self.warn(f'"{name}" was changed since it was sent, and stays as it is: {_parts(taken.kept)}; press Track')
         if taken.hidden:
             self.warn(f'"{name}" has parts that are hidden since it was sent, and stay so: {_parts(taken.hidden)}')
+        self.warn(f'"{name}" has no such parts any more, so their results were left out: {_named(taken.missing)}' if taken.missing else "")
+        self.warn(f'"{name}" has parts that are not in the results: {_named(taken.new)}; press Track' if taken.new else "")
         self.warn(f'"{name}": {stayed("snapped drawing", taken.edited)}' if taken.edited else "")
         self.warn(taken.left)
 
 
 def _parts(frames: dict[str, list[int]]) -> str:
     """Parts with their frames, in words."""
-    said = [f'"{part}" on {listed(own)}' for part, own in frames.items()]
+    return _shortened([f'"{part}" on {listed(own)}' for part, own in frames.items()])
+
+
+def _named(parts: list[str]) -> str:
+    """Parts, in words."""
+    return _shortened([f'"{part}"' for part in parts])
+
+
+def _shortened(said: list[str]) -> str:
     if len(said) > NAMED:
         said[NAMED:] = [f"{counted(len(said) - NAMED, 'more part')}"]
     return ", ".join(said)

@@ -82,7 +82,7 @@ class _Still:
         point = inverse @ np.append(world[:3, 3] + LIFT * normal, 1.0)
         # A normal goes with the transposed matrix.
         own = matrix[:3, :3].T @ normal
-        self._mapping = cameras.Mapping(cameras.reference_view(empty, *size), matrix, (point[:3], own / np.linalg.norm(own)))
+        self._mapping = cameras.Mapping(cameras.reference_view(empty, *size), matrix, (point[:3], own / np.linalg.norm(own)), cameras.radius_of(ob))
 
     def at(self, _layer: int, _frame: int) -> cameras.Mapping:
         """The mapping."""

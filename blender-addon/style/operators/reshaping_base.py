@@ -76,6 +76,7 @@ class Reshaping(OnContours, Long):
 
     def tell(self, context, result, frames: int) -> None:
         """Warns of what a person should know about a result of so many frames."""
+        self.warn(self._drawing.idle)
         self.warn(unmoved(result.still))
         for note in (*self._rests_on, *result.notes):
             self.warn(note)

@@ -32,9 +32,9 @@ class ROTOTOON_OT_save_clip(Guarded, Performance, OnContours, bpy.types.Operator
     def run(self, context) -> str:
         ob = context.object
         folder = folder_of(ob, self.folder)
-        limbs.needed(ob)
         reading = document.read(ob, results=True, gaps=True)
         project = reading.document
+        limbs.needed(ob, project)
         self.warn(document.leave_out_missing(reading))
         document.reach(project)
         character, offset = self.character or ob.name, ob.rototoon.frame_offset
