@@ -22,6 +22,7 @@ mod imported;
 mod keeping;
 mod left_out;
 pub mod memory;
+mod order;
 mod outdated;
 mod outside;
 mod paint;
