@@ -15,7 +15,7 @@
 
 use super::Document;
 use super::drawings::lines;
-use super::fields::{FieldError, by_frame, count, given, number, object, share, wrong};
+use super::fields::{FieldError, by_frame, count, given, object, share, wrong};
 use super::line::{self, Line};
 use super::save::rounded;
 use rototoon_base::geometry::Point;
@@ -89,7 +89,7 @@ fn drawing(frame: FrameNumber, list: &[Value], place: &str) -> Result<TracedDraw
 
 fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
     let fields = object(value, place)?;
-    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, number)?;
+    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, share)?;
     Ok(TracedStroke {
         track: count(fields.get("track"), &format!("{place}.track"))?,
         points,
