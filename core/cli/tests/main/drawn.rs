@@ -342,6 +342,31 @@ fn a_frame_without_a_file_has_the_pixel_aspect_of_the_footage() {
 }
 
 #[test]
+fn a_batch_exports_again_if_the_pixels_have_another_shape() {
+    let (folder, path) = project(coat());
+    let text = fs::read_to_string(&path).unwrap().replace("f_%d.png", "f_%d.exr");
+    fs::write(&path, text).unwrap();
+    let manifest = folder.path().join("night.json");
+    let shots = json!([{"name": "s", "project": "project.json"}]);
+    let steps = json!([{"do": "export", "to": "a.nk"}]);
+    fs::write(&manifest, json!({"rototoon_batch": 1, "steps": steps, "shots": shots}).to_string()).unwrap();
+    let results = folder.path().join("results");
+    for aspect in [1, 2] {
+        plate(&folder.path().join("f_0.exr"), aspect as f32);
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon"))
+            .arg("batch")
+            .arg(&manifest)
+            .arg("-o")
+            .arg(&results)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        let text = fs::read_to_string(results.join("s/a.nk")).unwrap();
+        assert!(text.contains(&format!("format \"40 30 0 0 40 30 {aspect} \"")), "{aspect}: {text}");
+    }
+}
+
+#[test]
 fn an_svg_has_the_mean_width_of_each_frame_and_says_so() {
     let stroke = |track: usize, widths: [f64; 2]| json!({"track": track, "points": [[5, 15], [35, 15]], "closed": false, "widths": widths, "colour": [0, 0, 0]});
     let traced = |first: Value, second: Value| json!({"traced": [{"frame": 0, "strokes": [first]}, {"frame": 1, "strokes": [second]}]});
