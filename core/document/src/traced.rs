@@ -14,7 +14,6 @@
 //!   doubt: it was drawn, or begins here.
 
 use super::Document;
-use super::drawings::lines;
 use super::fields::{FieldError, by_frame, count, given, object, share, wrong};
 use super::line::{self, Line};
 use super::save::rounded;
@@ -64,13 +63,19 @@ impl Document {
         by_frame(&self.other_list("traced")?, ["traced", "strokes"], drawing)
     }
 
-    /// Puts traced strokes into the document, in place of earlier ones.
+    /// Puts traced strokes into the document, in place of earlier ones. Drawings that are as before keep their text.
     pub fn set_traced(&mut self, drawings: &[TracedDrawing]) {
-        let written = drawings.iter().map(|drawing| {
-            let strokes: Vec<Value> = drawing.strokes.iter().map(written).collect();
-            json!({"frame": drawing.frame, "strokes": strokes})
-        });
-        self.set_other_field("traced", lines(written));
+        let earlier = self.traced().unwrap_or_default();
+        let written = self.keeping(
+            "traced",
+            [&earlier, drawings],
+            |drawing| drawing.frame,
+            |drawing| {
+                let strokes: Vec<Value> = drawing.strokes.iter().map(written).collect();
+                json!({"frame": drawing.frame, "strokes": strokes})
+            },
+        );
+        self.set_other_field("traced", written);
     }
 }
 
