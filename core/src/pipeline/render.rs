@@ -20,7 +20,7 @@ struct Rendering {
     format: Format,
     /// The footage, with the size of the pictures.
     size: Footage,
-    /// Width of the footage's pixels divided by their height.
+    /// Width of a pixel divided by its height on frames without a file.
     aspect: f32,
     cels: Cels,
 }
@@ -115,7 +115,8 @@ fn described(bytes: Vec<u8>, sequence: &Sequence, job: &RenderJob, plan: &Render
         pixel_aspect: own.pixel_aspect,
         chromaticities: own.chromaticities.filter(|_| shows_footage).unwrap_or(BT709),
         fps: plan.size.fps,
-        time_code: own.time_code,
+        // The code of a file that a frame holds is that of an earlier frame.
+        time_code: own.time_code.filter(|_| sequence.shown(frame) == frame),
     };
     header::describe(bytes, &facts)
 }
