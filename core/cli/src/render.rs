@@ -10,7 +10,8 @@ use rototoon::project::seen::Made;
 use rototoon::render::form::{Bits, Form, Packing};
 use rototoon::render::{Format, OverlayOptions};
 use rototoon::scene::parameters::Stage;
-use rototoon::scene::{FrameNumber, FramePattern};
+use rototoon::scene::{Footage, FrameNumber, FramePattern};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -93,7 +94,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     let home = project::home(&document, from);
-    check_writable(&probed(output))?;
+    probed(&job, &document.scene.footage).iter().try_for_each(|file| check_writable(file))?;
     let mut has_gaps = false;
     let done = progress::run(given, from, |bar| {
         pipeline::render(&document, &home, &job, bar).map_err(|error| {
@@ -129,11 +130,14 @@ fn warnings(document: &Document, home: &Path, job: &RenderJob) -> Result<Vec<Str
     Ok(told.into_iter().flatten().chain(pipeline::empty(document, job)).chain(changed).collect())
 }
 
-/// The file that shows whether the pictures of a pattern can be written. In the pattern `%%` stands for a percent sign, in the name of
-/// its folder too.
-fn probed(pattern: &str) -> PathBuf {
-    let file = Path::new(pattern).file_name().unwrap_or_default();
-    FramePattern::parse(pattern).map_or_else(|_| pattern.into(), |read| read.path(0).with_file_name(file))
+/// The files that show whether the pictures of a job can be written: one in each folder. In the pattern `%%` stands for a percent sign, in the name of
+/// its folder too, which may have the number of the frame.
+fn probed(job: &RenderJob, footage: &Footage) -> BTreeSet<PathBuf> {
+    let output = Path::new(&job.output);
+    let Ok(pattern) = FramePattern::parse(&job.output) else { return [output.to_owned()].into() };
+    let file = output.file_name().unwrap_or_default();
+    let frames = job.frames.clone().unwrap_or(footage.first..=footage.last);
+    frames.map(|frame| pattern.path(frame.saturating_add(job.offset)).with_file_name(file)).collect()
 }
 
 /// Reads frames in the form `A-B` or `A`. Both may be negative.
