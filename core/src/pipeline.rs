@@ -22,6 +22,7 @@ mod imported;
 mod keeping;
 mod left_out;
 pub mod memory;
+mod order;
 mod outdated;
 mod outside;
 mod paint;
@@ -318,10 +319,10 @@ pub fn export_fusion(document: &Document, options: impl Into<ShapeOptions>) -> S
     export::fusion(&document.scene, options)
 }
 
-/// Width of a pixel of the footage in `folder` divided by its height: that of the first frame on which there is a picture, and 1 if no file says it.
+/// Width of a pixel of the footage in `folder` divided by its height: that of the first frame with a file that can be read, and 1 if no file says it.
 pub fn pixel_aspect(document: &Document, folder: &Path) -> f64 {
     let Ok(sequence) = frames(document, folder) else { return 1.0 };
-    f64::from(sequence.pixel_aspect(document.scene.footage.first))
+    f64::from(sequence.pixel_aspect())
 }
 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names

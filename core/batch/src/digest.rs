@@ -36,7 +36,7 @@ pub fn of_footage(footage: &Footage, folder: &Path) -> String {
 /// What the steps of a shot read beside their document.
 #[derive(Clone, Debug, Default)]
 pub struct Frames {
-    /// The hash of the frames; empty if no step reads them.
+    /// The hash of the frames, or of what steps need of them; empty if no step depends on them.
     pub hash: String,
     /// The pattern of the frames as a document in the folder of the results has it.
     pub pattern: String,
@@ -44,7 +44,7 @@ pub struct Frames {
 
 /// The hash of a step: what it reads, and how. What names the frames is another file where they are reached by another pattern.
 pub fn of_step(step: &Step, document: &str, frames: &Frames) -> String {
-    let hash = if step.reads_footage() { &frames.hash } else { "" };
+    let hash = if step.depends_on_footage() { &frames.hash } else { "" };
     let pattern = if step.names_footage() { &frames.pattern } else { "" };
     let words = step.words("", "");
     let texts = [env!("CARGO_PKG_VERSION"), document, hash, pattern].into_iter();
@@ -88,8 +88,10 @@ mod tests {
             assert!(all[k + 1..].iter().all(|next| next != hash));
         }
         let of = |step: &Step, hash: &str, pattern: &str| of_step(step, "d", &frames(hash, pattern));
-        assert_eq!(of(&export, "f", "p"), of(&export, "g", "p"), "an export reads no frames");
-        assert_ne!(of(&export, "f", "p"), of(&export, "f", "q"), "but may name them");
+        assert_ne!(of(&export, "f", "p"), of(&export, "g", "p"), "an export has the shape of their pixels");
+        assert_ne!(of(&export, "f", "p"), of(&export, "f", "q"), "and may name them");
+        let tween = step(json!({"do": "tween"}));
+        assert_eq!(of(&tween, "f", "p"), of(&tween, "g", "p"), "in-betweens need no frames");
         let render = step(json!({"do": "render", "to": "a.png"}));
         assert_eq!(of(&render, "f", "p"), of(&render, "f", "q"), "a picture names none");
         assert_ne!(of_texts(["ab", "c"].into_iter()), of_texts(["a", "bc"].into_iter()));

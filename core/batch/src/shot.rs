@@ -13,6 +13,7 @@ use crate::step::Step;
 use rototoon::memory::Bytes;
 use rototoon::pipeline;
 use rototoon::project::place::folder_of;
+use rototoon::project::seen::Made;
 use rototoon::project::{Document, WriteError};
 use std::collections::BTreeMap;
 use std::io;
@@ -211,8 +212,15 @@ impl Work<'_> {
     fn frames(&self, project: &Path) -> Result<Frames, ShotError> {
         let mut document = Document::load(project).map_err(|error| ShotError::Step(error.lines().join("; ")))?;
         let home = folder_of(project, &document.scene.footage);
-        let is_read = self.shot.steps.iter().any(Step::reads_footage);
-        let hash = if is_read { digest::of_footage(&document.scene.footage, &home) } else { String::new() };
+        let steps = &self.shot.steps;
+        let depends = steps.iter().any(Step::depends_on_footage);
+        // An export alone looks at the pictures only if the document knows what they were.
+        let is_read = steps.iter().any(Step::reads_footage) || (depends && knows_pictures(&document));
+        let hash = match (is_read, depends) {
+            (true, _) => digest::of_footage(&document.scene.footage, &home),
+            (false, true) => pipeline::pixel_aspect(&document, &home).to_string(),
+            (false, false) => String::new(),
+        };
         pipeline::relocate(&mut document, &home, &self.folder);
         Ok(Frames { hash, pattern: document.scene.footage.pattern })
     }
@@ -395,6 +403,11 @@ fn failure(step: &Step, ended: &Ended) -> String {
         (Some(_), _) => errors.join("; "),
     };
     format!("{}: {why}", step.name())
+}
+
+/// Whether a document has marks of the pictures from which its results were made.
+fn knows_pictures(document: &Document) -> bool {
+    Made::ALL.iter().any(|made| document.seen(*made).is_ok_and(|seen| !seen.is_empty()))
 }
 
 /// What a program said last, after a colon: the words of a panic, or of an allocation that failed. A list of calls may follow.

@@ -89,9 +89,14 @@ impl Step {
         KINDS.iter().find(|(kind, ..)| *kind == self.kind).map_or("", |(_, name, _)| name)
     }
 
-    /// Whether it reads the frames of the footage.
+    /// Whether it works on the frames of the footage.
     pub fn reads_footage(&self) -> bool {
         !matches!(self.kind, Kind::Export | Kind::Tween)
+    }
+
+    /// Whether other frames may give another result. An export has the shape of their pixels, and says whether they are those that were tracked.
+    pub fn depends_on_footage(&self) -> bool {
+        self.kind != Kind::Tween
     }
 
     /// Whether what it writes may name the frames of the footage.

@@ -3,13 +3,15 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
-use rototoon::pipeline::{self, Picture, RenderJob};
+use rototoon::pipeline::{self, Picture, PipelineError, RenderJob};
+use rototoon::project::Document;
 use rototoon::project::output::check_writable;
 use rototoon::project::seen::Made;
 use rototoon::render::form::{Bits, Form, Packing};
 use rototoon::render::{Format, OverlayOptions};
 use rototoon::scene::parameters::Stage;
-use rototoon::scene::{FrameNumber, FramePattern};
+use rototoon::scene::{Footage, FrameNumber, FramePattern};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
@@ -92,15 +94,25 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let document = if drawn { project::load_drawn(from)? } else { project::load(from)? };
     let home = project::home(&document, from);
-    check_writable(&probed(output))?;
-    progress::run(given, from, |bar| {
-        pipeline::render(&document, &home, &job, bar).map_err(|error| Failure::of(error, from))
-    })?;
-    let lacking = if drawn { pipeline::undrawn(&document, &job) } else { pipeline::untracked(&document.scene) };
-    let outdated = pipeline::outdated(&document.scene);
-    let empty = pipeline::empty(&document, &job);
+    probed(&job, &document.scene.footage).iter().try_for_each(|file| check_writable(file))?;
+    let mut has_gaps = false;
+    let done = progress::run(given, from, |bar| {
+        pipeline::render(&document, &home, &job, bar).map_err(|error| {
+            has_gaps = matches!(error, PipelineError::Gaps { .. });
+            Failure::of(error, from)
+        })
+    });
+    // Where some pictures are missing, the others were drawn and may be wrong all the same.
+    let told = if done.is_ok() || has_gaps { warnings(&document, &home, &job) } else { Ok(Vec::new()) };
+    told.iter().flatten().for_each(|warning| line("warning", &format!("{output}: {warning}")));
+    done?;
+    told.map(drop).map_err(|error| Failure::of(error, from))
+}
+
+/// What is told of pictures that were drawn.
+fn warnings(document: &Document, home: &Path, job: &RenderJob) -> Result<Vec<String>, PipelineError> {
+    let drawn = job.picture.shows_regions() || job.picture.shows_strokes();
     let contours = !drawn && job.frames.is_none();
-    let outside = contours.then(|| pipeline::outside(&document.scene)).flatten();
     let made: Vec<Made> = [
         (job.picture.shows_regions(), Made::Filled),
         (job.picture.shows_strokes(), Made::Traced),
@@ -109,23 +121,23 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     .into_iter()
     .filter_map(|(shows, made)| shows.then_some(made))
     .collect();
-    let changed =
-        pipeline::changed(&document, &home, &made, job.frames.as_ref()).map_err(|error| Failure::of(error, from))?;
-    lacking
-        .iter()
-        .chain(&outdated)
-        .chain(&empty)
-        .chain(&outside)
-        .chain(&changed)
-        .for_each(|warning| line("warning", &format!("{output}: {warning}")));
-    Ok(())
+    let told = [
+        if drawn { pipeline::undrawn(document, job) } else { pipeline::untracked(&document.scene) },
+        pipeline::outdated(&document.scene),
+        contours.then(|| pipeline::outside(&document.scene)).flatten(),
+    ];
+    let changed = pipeline::changed(document, home, &made, job.frames.as_ref())?;
+    Ok(told.into_iter().flatten().chain(pipeline::empty(document, job)).chain(changed).collect())
 }
 
-/// The file that shows whether the pictures of a pattern can be written. In the pattern `%%` stands for a percent sign, in the name of
-/// its folder too.
-fn probed(pattern: &str) -> PathBuf {
-    let file = Path::new(pattern).file_name().unwrap_or_default();
-    FramePattern::parse(pattern).map_or_else(|_| pattern.into(), |read| read.path(0).with_file_name(file))
+/// The files that show whether the pictures of a job can be written: one in each folder. In the pattern `%%` stands for a percent sign, in the name of
+/// its folder too, which may have the number of the frame.
+fn probed(job: &RenderJob, footage: &Footage) -> BTreeSet<PathBuf> {
+    let output = Path::new(&job.output);
+    let Ok(pattern) = FramePattern::parse(&job.output) else { return [output.to_owned()].into() };
+    let file = output.file_name().unwrap_or_default();
+    let frames = job.frames.clone().unwrap_or(footage.first..=footage.last);
+    frames.map(|frame| pattern.path(frame.saturating_add(job.offset)).with_file_name(file)).collect()
 }
 
 /// Reads frames in the form `A-B` or `A`. Both may be negative.

@@ -214,13 +214,19 @@ impl Document {
         })
     }
 
-    /// Puts painted regions into the document, in place of earlier ones.
+    /// Puts painted regions into the document, in place of earlier ones. Drawings that are as before keep their text.
     pub fn set_filled(&mut self, drawings: &[FilledDrawing]) {
-        let written = drawings.iter().map(|drawing| {
-            let regions: Vec<Value> = drawing.regions.iter().map(written).collect();
-            json!({"frame": drawing.frame, "regions": regions})
-        });
-        self.set_other_field("filled", lines(written));
+        let earlier = self.filled().unwrap_or_default();
+        let written = self.keeping(
+            "filled",
+            [&earlier, drawings],
+            |drawing| drawing.frame,
+            |drawing| {
+                let regions: Vec<Value> = drawing.regions.iter().map(written).collect();
+                json!({"frame": drawing.frame, "regions": regions})
+            },
+        );
+        self.set_other_field("filled", written);
     }
 }
 

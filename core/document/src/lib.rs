@@ -61,6 +61,7 @@ pub mod drawings;
 mod fields;
 pub mod fills;
 pub mod inputs;
+mod kept;
 pub mod library;
 pub mod limbs;
 mod line;

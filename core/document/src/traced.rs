@@ -14,8 +14,7 @@
 //!   doubt: it was drawn, or begins here.
 
 use super::Document;
-use super::drawings::lines;
-use super::fields::{FieldError, by_frame, count, given, number, object, share, wrong};
+use super::fields::{FieldError, by_frame, count, given, object, share, wrong};
 use super::line::{self, Line};
 use super::save::rounded;
 use rototoon_base::geometry::Point;
@@ -64,13 +63,19 @@ impl Document {
         by_frame(&self.other_list("traced")?, ["traced", "strokes"], drawing)
     }
 
-    /// Puts traced strokes into the document, in place of earlier ones.
+    /// Puts traced strokes into the document, in place of earlier ones. Drawings that are as before keep their text.
     pub fn set_traced(&mut self, drawings: &[TracedDrawing]) {
-        let written = drawings.iter().map(|drawing| {
-            let strokes: Vec<Value> = drawing.strokes.iter().map(written).collect();
-            json!({"frame": drawing.frame, "strokes": strokes})
-        });
-        self.set_other_field("traced", lines(written));
+        let earlier = self.traced().unwrap_or_default();
+        let written = self.keeping(
+            "traced",
+            [&earlier, drawings],
+            |drawing| drawing.frame,
+            |drawing| {
+                let strokes: Vec<Value> = drawing.strokes.iter().map(written).collect();
+                json!({"frame": drawing.frame, "strokes": strokes})
+            },
+        );
+        self.set_other_field("traced", written);
     }
 }
 
@@ -89,7 +94,7 @@ fn drawing(frame: FrameNumber, list: &[Value], place: &str) -> Result<TracedDraw
 
 fn stroke(value: &Value, place: &str) -> Result<TracedStroke, FieldError> {
     let fields = object(value, place)?;
-    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, number)?;
+    let Line { points, closed, fill, widths, colour, fill_colour } = line::read(fields, place, share)?;
     Ok(TracedStroke {
         track: count(fields.get("track"), &format!("{place}.track"))?,
         points,

@@ -76,35 +76,35 @@ impl Default for Described {
     }
 }
 
-/// What a file says of its picture; nothing for other files than OpenEXR, and for those that cannot be read. It reads the header of
+/// What a file says of its picture; nothing for other files than OpenEXR. `None` for a file that cannot be read. It reads the header of
 /// the file only.
-pub fn described(path: &Path) -> Described {
+pub fn described(path: &Path) -> Option<Described> {
     const SENSIBLE: std::ops::RangeInclusive<f32> = 0.01..=100.0;
     let read = || {
         let reader = open(path, false)?;
         if reader.format() != Some(ImageFormat::OpenExr) {
-            return Ok(Described::default());
+            return Ok(reader.format().map(|_| Described::default()));
         }
         let headers = tiles::headers(&mut reader.into_inner())?;
-        let Some(header) = headers.first() else { return Ok(Described::default()) };
+        let Some(header) = headers.first() else { return Ok(None) };
         let own = &header.shared_attributes;
         let places = own.chromaticities.map(|own| [own.red, own.green, own.blue, own.white]);
         let numbers = places
             .map(|places| std::array::from_fn(|k| if k % 2 == 0 { places[k / 2].x() } else { places[k / 2].y() }));
         let code =
             own.time_code.and_then(|code| Some([code.pack_time_as_tv60_u32().ok()?, code.pack_user_data_as_u32()]));
-        Ok(Described {
+        Ok(Some(Described {
             pixel_aspect: Some(own.pixel_aspect).filter(|aspect| SENSIBLE.contains(aspect)).unwrap_or(1.0),
             chromaticities: numbers.filter(|all: &[f32; 8]| all.iter().all(|number| number.is_finite())),
             time_code: code,
-        })
+        }))
     };
-    guarded(read).unwrap_or_default()
+    guarded(read).ok().flatten()
 }
 
 /// Width of a pixel divided by its height ([`described`]).
 pub fn pixel_aspect(path: &Path) -> f32 {
-    described(path).pixel_aspect
+    described(path).unwrap_or_default().pixel_aspect
 }
 
 /// Bytes of the picture in a file as [`super::store`] keeps it. Of floats this is a guess: nearly all have 16 bits. It
@@ -199,13 +199,13 @@ mod tests {
         own.time_code = Some(TimeCode { hours: 1, minutes: 23, seconds: 45, frame: 16, ..TimeCode::default() });
         own.pixel_aspect = 2.0;
         image.write().to_file(&path).unwrap();
-        let found = described(&path);
+        let found = described(&path).unwrap();
         assert_eq!(found.pixel_aspect, 2.0);
         assert_eq!(found.chromaticities, Some([0.125, 0.0625, 0.25, 0.125, 0.375, 0.1875, 0.5, 0.25]));
         // Two decimal digits in each byte.
         assert_eq!(found.time_code, Some([0x0123_4516, 0]));
         std::fs::write(&path, "no picture").unwrap();
-        assert_eq!(described(&path), Described::default());
+        assert_eq!(described(&path), None);
     }
 
     #[test]

@@ -161,13 +161,14 @@ impl Sequence {
     }
 
     /// What a frame's file says of its picture ([`described`]).
-    pub fn described(&self, frame: FrameNumber) -> Described {
+    pub fn described(&self, frame: FrameNumber) -> Option<Described> {
         described(&self.path(frame))
     }
 
-    /// Width of a frame's pixels divided by their height.
-    pub fn pixel_aspect(&self, frame: FrameNumber) -> f32 {
-        self.described(frame).pixel_aspect
+    /// Width of the footage's pixels divided by their height, as the first file says that can be read; 1 if there is none.
+    pub fn pixel_aspect(&self) -> f32 {
+        let Footage { first, last, .. } = self.footage;
+        (first..=last).find_map(|frame| self.described(frame)).unwrap_or_default().pixel_aspect
     }
 
     fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {

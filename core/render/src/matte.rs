@@ -1,7 +1,6 @@
 //! Coverage of the closed parts on a frame. The areas come from [`super::coverage`].
 //!
-//! Parts with a feather are masks of their own, laid over one another from the farthest to the nearest. Neighbouring parts
-//! without one are united exactly.
+//! Parts with a feather are masks of their own. All others are united exactly, whatever lies between them: masks that are added give the same in any order.
 
 use super::composite::{Layer, Layers};
 use super::coverage::{Shape, Window};
@@ -51,7 +50,7 @@ fn soft(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Ra
     drawn.unwrap_or_else(|| Raster::new(width, height, 0.0))
 }
 
-/// The masks of closed parts, the farthest first. Neighbouring ones without a feather are one.
+/// The masks of closed parts: one for all without a feather, then the others, the farthest first.
 fn soft_layers(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool) -> Layers {
     let mut order: Vec<&Part> =
         scene.parts.iter().enumerate().filter(|(k, _)| wanted(*k)).map(|(_, part)| part).collect();
@@ -63,7 +62,8 @@ fn soft_layers(scene: &Scene, frame: FrameNumber, wanted: &dyn Fn(usize) -> bool
         // Parts without a feather are hard, so the falloff of the first one changes nothing where there are several.
         Layer::new(Mask::new(vec![outlines], 0.0, 0.0).with_widths(&pieces).with_falloff(parts[0].falloff))
     };
-    let groups = order.chunk_by(|a, b| a.soft_widths().is_none() && b.soft_widths().is_none());
+    let (hard, soft): (Vec<&Part>, Vec<&Part>) = order.into_iter().partition(|part| part.soft_widths().is_none());
+    let groups = (!hard.is_empty()).then_some(&hard[..]).into_iter().chain(soft.chunks(1));
     Layers(groups.map(layer).collect())
 }
 
@@ -142,6 +142,23 @@ mod tests {
         assert!(row[48] == 0.0 && row[52] == 1.0 && row[23] == 1.0 && row[24] == 1.0 && row[3] == 0.0, "{row:?}");
         assert!((row[69] + row[70] - 1.0).abs() < 0.01 && row[64] < 1.0 && row[75] > 0.0 && row[78] == 0.0, "{row:?}");
         assert_eq!((hard.get(10, 20), soft.row(20)[46..].to_vec()), (1.0, row[46..].to_vec()));
+    }
+
+    #[test]
+    fn a_soft_part_whose_depth_is_between_two_others_leaves_no_seam_between_them() {
+        let part = |x: f64, width: f64, depth: f64, feather: &[f64]| Part {
+            closed: true,
+            keys: [(0, rectangle(x, 4.0, x + width, 16.0))].into(),
+            depth,
+            feather: feather.into(),
+            ..Part::default()
+        };
+        let footage =
+            Footage { pattern: "%d.png".into(), first: 0, last: 0, fps: 24.0, width: 80, height: 20, held: false };
+        let parts = vec![part(4.0, 6.5, 0.0, &[]), part(50.0, 20.0, 1.0, &[3.0; 4]), part(10.5, 6.5, 2.0, &[])];
+        let all = matte(&Scene { footage, parts }, 0, None);
+        assert!(all.row(10)[4..17].iter().all(|value| (value - 1.0).abs() < 1e-6), "{:?}", all.row(10));
+        assert!(all.get(48, 10) > 0.0 && all.get(48, 10) < 1.0);
     }
 
     #[test]

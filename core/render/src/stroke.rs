@@ -16,18 +16,19 @@ const FLAT: f64 = 0.02;
 /// Greatest number of sides of a circle, which a stroke of any width has.
 const SIDES: f64 = 256.0;
 
-/// The hulls of a stroke, whose union is its area. `radii` are half of the width at each point, in pixels. Points that are not finite, or have
-/// such a radius or none, give a stroke without area there.
+/// The hulls of a stroke, whose union is its area. `radii` are half of the width at each point, in pixels. A stroke may run out to a point of radius 0. Points
+/// that are not finite, or have no such radius, give a stroke without area there.
 pub fn areas(points: &[Point], radii: &[f64], closed: bool) -> Vec<Vec<Point>> {
-    let whole = |k: usize| {
-        let radius = radii.get(k).copied().unwrap_or(0.0);
-        (points[k].is_finite() && radius.is_finite() && radius > 0.0).then_some((points[k], radius))
+    let disc = |k: usize| {
+        let radius = radii.get(k).copied().filter(|radius| radius.is_finite() && *radius >= 0.0)?;
+        points[k].is_finite().then_some((points[k], radius))
     };
     if let [_] = points {
-        return whole(0).map(|(at, radius)| arc(at, radius, 0.0, TAU)).into_iter().collect();
+        return disc(0).filter(|(_, radius)| *radius > 0.0).map(|(at, r)| arc(at, r, 0.0, TAU)).into_iter().collect();
     }
     let pieces = if closed { points.len() } else { points.len().saturating_sub(1) };
-    (0..pieces).filter_map(|k| Some(hull(whole(k)?, whole((k + 1) % points.len())?))).collect()
+    let ends = (0..pieces).filter_map(|k| Some((disc(k)?, disc((k + 1) % points.len())?)));
+    ends.filter(|(a, b)| a.1 > 0.0 || b.1 > 0.0).map(|(a, b)| hull(a, b)).collect()
 }
 
 /// The convex hull of two discs.
@@ -44,8 +45,11 @@ fn hull((a, r): (Point, f64), (b, s): (Point, f64)) -> Vec<Point> {
     around
 }
 
-/// Points of a circle from one angle to a greater one. The first and the last are points of it, but for a full turn.
+/// Points of a circle from one angle to a greater one. The first and the last are points of it, but for a full turn. One of radius 0 is a point.
 fn arc(middle: Point, radius: f64, from: f64, to: f64) -> Vec<Point> {
+    if radius == 0.0 {
+        return vec![middle];
+    }
     // The middle of a side is radius · (1 − cos(angle / 2)) inside of the circle.
     let step = 2.0 * (1.0 - FLAT / radius).clamp(-1.0, 1.0).acos();
     let step = step.clamp(TAU / SIDES, 0.5 * PI);
@@ -83,9 +87,29 @@ mod tests {
     }
 
     #[test]
+    fn a_stroke_runs_out_to_a_point() {
+        let area = |points: &[Point], radii: &[f64]| {
+            coverage(&areas(points, radii, false), 60, 40).data().iter().map(|v| f64::from(*v)).sum::<f64>()
+        };
+        // A triangle between the point and where its sides touch the circle, and the rest of the disc.
+        let cone = |r: f64, away: f64| {
+            let touch = (r / away).acos();
+            r * away * touch.sin() + r * r * (PI - touch)
+        };
+        let line = [p(10.0, 20.0), p(30.0, 20.0), p(50.0, 20.0)];
+        assert!((area(&line[..2], &[4.0, 0.0]) - cone(4.0, 20.0)).abs() < 0.5);
+        assert!((area(&line[..2], &[0.0, 4.0]) - cone(4.0, 20.0)).abs() < 0.5);
+        assert!((area(&line, &[0.0, 4.0, 0.0]) - (2.0 * cone(4.0, 20.0) - PI * 16.0)).abs() < 0.5);
+        // A disc that contains the point.
+        assert!((area(&[line[0], p(11.0, 20.0)], &[6.0, 0.0]) - PI * 36.0).abs() < 0.8);
+    }
+
+    #[test]
     fn what_has_no_width_or_place_has_no_area() {
         assert!(areas(&[], &[], false).is_empty());
-        assert!(areas(&[p(1.0, 1.0), p(5.0, 1.0)], &[0.0, 1.0], false).is_empty());
+        assert!(areas(&[p(1.0, 1.0), p(5.0, 1.0)], &[0.0, 0.0], false).is_empty());
+        assert!(areas(&[p(1.0, 1.0), p(5.0, 1.0)], &[-1.0, 1.0], false).is_empty());
+        assert!(areas(&[p(1.0, 1.0)], &[0.0], false).is_empty());
         assert!(areas(&[p(1.0, 1.0), p(5.0, 1.0)], &[1.0], false).is_empty(), "a radius is missing");
         assert!(areas(&[p(f64::NAN, 1.0)], &[1.0], false).is_empty());
         let all = areas(&[p(0.0, 0.0), p(1.0, 0.0), p(f64::INFINITY, 0.0), p(3.0, 0.0), p(4.0, 0.0)], &[1.0; 5], false);

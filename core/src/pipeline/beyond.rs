@@ -41,21 +41,24 @@ pub fn beyond(scene: &Scene) -> Option<String> {
         .then(|| format!("{what}: {listed}{more}; a key on the first and on the last frame keeps a part there"))
 }
 
-/// The frames of a job on which none of its parts has a contour, as a message for the user. `None` if there are none, and for pictures of
+/// The frames of a job on which none of its closed parts has a contour, and the open parts that it asks for, as messages for the user. None for pictures of
 /// something else. Frames on which a part is marked absent do not count.
-pub fn empty(document: &Document, job: &RenderJob) -> Option<String> {
+pub fn empty(document: &Document, job: &RenderJob) -> Vec<String> {
     if job.picture.shows_regions() || job.picture.shows_strokes() || matches!(job.picture, Picture::Overlay(_)) {
-        return None;
+        return Vec::new();
     }
     let scene = &document.scene;
-    let asked = job.parts.as_ref().map(|names| super::render::indices(scene, names)).transpose().ok()?;
-    let parts: Vec<&Part> = match asked {
-        Some(indices) => indices.into_iter().map(|index| &scene.parts[index]).collect(),
-        None => scene.parts.iter().collect(),
-    };
-    let range = frames_of(&scene.footage, job.frames.clone()).ok()?;
-    let lacking: Vec<FrameNumber> = range.filter(|&frame| parts.iter().all(|part| lacks(part, frame))).collect();
-    (!lacking.is_empty()).then(|| format!("frames {} show nothing: no part has a contour there", runs(&lacking)))
+    let asked = job.parts.as_ref().map(|names| super::render::indices(scene, names)).transpose();
+    let (Ok(asked), Ok(range)) = (asked, frames_of(&scene.footage, job.frames.clone())) else { return Vec::new() };
+    let is_asked = |index: &usize| asked.as_ref().is_none_or(|indices| indices.contains(index));
+    let parts = (0..scene.parts.len()).filter(is_asked).map(|index| &scene.parts[index]);
+    let (closed, open): (Vec<&Part>, Vec<&Part>) = parts.partition(|part| part.closed);
+    let lacking: Vec<FrameNumber> = range.filter(|&frame| closed.iter().all(|part| lacks(part, frame))).collect();
+    let nothing = (!lacking.is_empty())
+        .then(|| format!("frames {} show nothing: no closed part has a contour there", runs(&lacking)));
+    let open = named(open.into_iter()).filter(|_| asked.is_some());
+    let open = open.map(|names| format!("open parts have no area, so nothing of them is shown: {names}"));
+    nothing.into_iter().chain(open).collect()
 }
 
 /// Whether a part has no contour on a frame on which it is not marked absent.
@@ -111,10 +114,31 @@ mod tests {
             form: Form::default(),
             output: "m.%d.png".into(),
         };
-        assert_eq!(empty(&document, &job(Some(1..=17), None)), None);
-        let told = empty(&document, &job(None, None)).unwrap();
+        assert!(empty(&document, &job(Some(1..=17), None)).is_empty());
+        let told = empty(&document, &job(None, None)).join("\n");
         assert!(told.starts_with("frames 18-20 show nothing"), "{told}");
-        let told = empty(&document, &job(Some(2..=10), Some("leg"))).unwrap();
+        let told = empty(&document, &job(Some(2..=10), Some("leg"))).join("\n");
         assert!(told.starts_with("frames 2, 10 show nothing"), "{told}");
+    }
+
+    #[test]
+    fn open_parts_show_nothing() {
+        let open = |name| Part { closed: false, ..part(name, [1, 20]) };
+        let job = |parts: Option<&[&str]>| RenderJob {
+            picture: Picture::Matte,
+            frames: None,
+            offset: 0,
+            parts: parts.map(|names| names.iter().map(|name| (*name).to_owned()).collect()),
+            scale: 1.0,
+            form: Form::default(),
+            output: "m.%d.png".into(),
+        };
+        let nothing = "frames 1-20 show nothing: no closed part has a contour there";
+        let sleeve = r#"open parts have no area, so nothing of them is shown: "sleeve""#;
+        assert_eq!(empty(&document(vec![open("sleeve")]), &job(None)), [nothing]);
+        let document = document(vec![open("sleeve"), part("arm", [1, 20])]);
+        assert!(empty(&document, &job(None)).is_empty());
+        assert_eq!(empty(&document, &job(Some(&["sleeve"]))), [nothing, sleeve]);
+        assert_eq!(empty(&document, &job(Some(&["sleeve", "arm"]))), [sleeve]);
     }
 }

@@ -26,7 +26,7 @@ pub fn recolour(document: &mut Document, entry: &Recolour) -> Result<usize, Pipe
     document.add_recolour(entry).map_err(|error| field(&error))?;
     let changed = counts.iter().sum();
     if changed > 0 {
-        document.set_filled(&filled);
+        document.recolour_filled(&filled).map_err(|error| field(&error))?;
     }
     Ok(changed)
 }

@@ -4,6 +4,7 @@ use super::paint::{Cels, sized};
 use super::picture::{Picture, RenderJob};
 use super::{PipelineError, excerpt, frames, frames_of, memory};
 use crate::pictures::Sequence;
+use crate::pictures::decode::Described;
 use crate::project::{Document, Inputs, write_whole};
 use crate::render::header::{self, BT709, Facts};
 use crate::render::{self, Format};
@@ -19,7 +20,7 @@ struct Rendering {
     format: Format,
     /// The footage, with the size of the pictures.
     size: Footage,
-    /// Width of the footage's pixels divided by their height.
+    /// Width of a pixel divided by its height on frames without a file.
     aspect: f32,
     cels: Cels,
 }
@@ -108,13 +109,14 @@ fn picture(
 
 /// An OpenEXR file with what is known of its pixels. What shows the footage has the footage's colours.
 fn described(bytes: Vec<u8>, sequence: &Sequence, job: &RenderJob, plan: &Rendering, frame: FrameNumber) -> Vec<u8> {
-    let own = sequence.described(frame);
+    let own = sequence.described(frame).unwrap_or(Described { pixel_aspect: plan.aspect, ..Described::default() });
     let shows_footage = matches!(job.picture, Picture::Overlay(_) | Picture::Cutout | Picture::Painted);
     let facts = Facts {
-        pixel_aspect: plan.aspect,
+        pixel_aspect: own.pixel_aspect,
         chromaticities: own.chromaticities.filter(|_| shows_footage).unwrap_or(BT709),
         fps: plan.size.fps,
-        time_code: own.time_code,
+        // The code of a file that a frame holds is that of an earlier frame.
+        time_code: own.time_code.filter(|_| sequence.shown(frame) == frame),
     };
     header::describe(bytes, &facts)
 }
@@ -140,7 +142,7 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
         parts: job.parts.as_ref().map(|names| indices(&document.scene, names)).transpose()?,
         format,
         size: sized(footage, job)?,
-        aspect: sequence.pixel_aspect(first),
+        aspect: if matches!(format, Format::Exr(_)) { sequence.pixel_aspect() } else { 1.0 },
         cels,
     })
 }
@@ -148,4 +150,45 @@ fn plan(document: &Document, sequence: &Sequence, job: &RenderJob) -> Result<Ren
 pub(super) fn indices(scene: &Scene, names: &[String]) -> Result<Vec<usize>, PipelineError> {
     let index = |name: &String| scene.part_index(name).map_err(|error| PipelineError::option("parts", error));
     names.iter().map(index).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use crate::pictures::decode::described;
+    use crate::render::form::Form;
+    use crate::scene::{Part, Raster, Silent};
+
+    /// Writes an OpenEXR frame with this time code.
+    fn plate(path: &Path, code: u32) {
+        let picture = Raster::new(16, 12, [0.5; 3]);
+        let bytes = render::encode::colours(&picture, Format::of(path).unwrap()).unwrap();
+        let facts = Facts { pixel_aspect: 1.0, chromaticities: BT709, fps: 24.0, time_code: Some([code, 0]) };
+        std::fs::write(path, header::describe(bytes, &facts)).unwrap();
+    }
+
+    #[test]
+    fn a_frame_that_holds_an_earlier_file_has_not_its_time_code() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str, frame: FrameNumber| folder.path().join(format!("{name}_{frame}.exr"));
+        plate(&at("a", 1), 0x0100_0001);
+        plate(&at("a", 3), 0x0100_0003);
+        let footage =
+            Footage { pattern: "a_%d.exr".into(), first: 1, last: 4, fps: 24.0, width: 16, height: 12, held: true };
+        let keys = [1, 4].map(|frame| (frame, vec![Point::ZERO, Point::X, Point::Y])).into();
+        let part = Part { name: "arm".into(), closed: true, keys, ..Part::default() };
+        let job = RenderJob {
+            picture: Picture::Matte,
+            frames: None,
+            offset: 0,
+            parts: None,
+            scale: 1.0,
+            form: Form::default(),
+            output: at("m", 0).to_string_lossy().replace("m_0", "m_%d"),
+        };
+        render(&Document::new(Scene { footage, parts: vec![part] }), folder.path(), &job, &Silent).unwrap();
+        let codes = [1, 2, 3, 4].map(|frame| described(&at("m", frame)).unwrap().time_code);
+        assert_eq!(codes, [Some([0x0100_0001, 0]), None, Some([0x0100_0003, 0]), None]);
+    }
 }

@@ -2,18 +2,16 @@
 //!
 //! A frame shows its traced strokes. Where it has none, it shows those of its in-between, and else those of its drawing.
 //!
-//! Fills are behind lines ([`behind`]). But where a stroke has a line and a fill of another colour, such as the outline of a
-//! painted shape, the frame's strokes keep their own order, from back to front: such a stroke hides what is drawn before it, and a
+//! Strokes lie in the order of the document, from back to front, but fills are behind lines. Where a stroke of the film has a line and a fill of another
+//! colour, such as the outline of a painted shape, fills stay where they are too, on all frames: such a stroke hides what is drawn before it, and a
 //! fill that is drawn after it lies on it.
 
-use super::{PipelineError, fill};
+use super::{PipelineError, fill, order};
 use crate::export::SvgStroke;
-use crate::geometry::{Point, polygon};
 use crate::project::Document;
 use crate::project::drawings::DrawnStroke;
 use crate::project::traced::TracedStroke;
 use crate::scene::{Colour, FrameNumber};
-use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -93,13 +91,14 @@ pub(super) fn strokes(document: &Document) -> Result<BTreeMap<FrameNumber, Vec<S
         let seen = |stroke: TracedStroke| Seen { id: Id::Track(stroke.track), opacity: 1.0, stroke, traced: true };
         found.insert(own.frame, own.strokes.into_iter().map(seen).collect());
     }
-    let key = |own: &Seen| (own.stroke.fill, area(&own.stroke.points));
-    let sorted = |own: &&mut Vec<Seen>| own.iter().all(|seen| seen.stroke.fill_colour.is_none());
-    found.values_mut().filter(sorted).for_each(|own| own.sort_by(|a, b| behind(key(a), key(b))));
+    // One rule for the film: no shape changes its place because of what another frame has.
+    if !found.values().flatten().any(|seen| seen.stroke.fill_colour.is_some()) {
+        found.values_mut().for_each(|own| own.sort_by_key(|seen| !seen.stroke.fill));
+    }
     Ok(found)
 }
 
-/// The strokes of a document, each with its points on all frames of the footage.
+/// The strokes of a document, each with its points on all frames of the footage, in one order from back to front.
 ///
 /// # Errors
 ///
@@ -115,7 +114,8 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
     let footage = &document.scene.footage;
     by_frame.retain(|frame, _| (footage.first..=footage.last).contains(frame));
     let lined: BTreeSet<Id> = by_frame.values().flatten().filter(|own| own.is_lined()).map(|own| own.id).collect();
-    let order = common_order(&by_frame);
+    let order =
+        order::common(&by_frame.values().map(|own| own.iter().map(|seen| seen.id).collect()).collect::<Vec<_>>());
     let mut found: BTreeMap<Id, SvgStroke> = BTreeMap::new();
     for (frame, mut own) in by_frame.into_iter().flat_map(|(frame, own)| own.into_iter().map(move |s| (frame, s))) {
         own.stroke.colour = if own.traced { traced.get(&own.id).copied() } else { own.stroke.colour };
@@ -123,14 +123,7 @@ pub(super) fn to_export(document: &Document) -> Result<Vec<SvgStroke>, PipelineE
         let known = found.entry(own.id).or_insert_with(|| begun(&own, lined, plain));
         add(known, frame, own, plain);
     }
-    // Else the numbers follow the order of the first drawing.
-    if found.values().any(|stroke| !stroke.fills.is_empty()) {
-        return Ok(order.into_iter().filter_map(|id| found.remove(&id)).collect());
-    }
-    let mut found: Vec<SvgStroke> = found.into_values().collect();
-    let largest = |s: &SvgStroke| s.points.values().map(|points| area(points)).fold(0.0, f64::max);
-    found.sort_by(|a, b| behind((a.fill, largest(a)), (b.fill, largest(b))));
-    Ok(found)
+    Ok(order.into_iter().filter_map(|id| found.remove(&id)).collect())
 }
 
 /// A stroke as it begins on its first frame. `lined` says whether it has a line on any frame.
@@ -173,24 +166,6 @@ fn add(known: &mut SvgStroke, frame: FrameNumber, mut own: Seen, plain: f64) {
     }
 }
 
-/// All strokes in one order from back to front. Those of the first frame have its order. A stroke that comes later lies where its frame has it: just over the one
-/// that is behind it there.
-fn common_order(by_frame: &BTreeMap<FrameNumber, Vec<Seen>>) -> Vec<Id> {
-    let mut order: Vec<Id> = Vec::new();
-    let mut known: BTreeSet<Id> = BTreeSet::new();
-    for own in by_frame.values() {
-        let mut before: Option<Id> = None;
-        for seen in own {
-            if known.insert(seen.id) {
-                let place = before.and_then(|id| order.iter().position(|other| *other == id));
-                order.insert(place.map_or(0, |place| place + 1), seen.id);
-            }
-            before = Some(seen.id);
-        }
-    }
-    order
-}
-
 /// Says how many strokes have a width that varies along them, of which an SVG file has the mean; `None` if there are none.
 pub(super) fn varying(document: &Document) -> Option<String> {
     let mut found: BTreeSet<Id> = BTreeSet::new();
@@ -211,19 +186,60 @@ pub(super) fn plain(document: &Document) -> f64 {
     PLAIN * document.scene.footage.height as f64 / 540.0
 }
 
-/// The order from back to front: fills are behind lines, and a larger fill is behind a smaller one, such as its hole.
-pub(super) fn behind(a: (bool, f64), b: (bool, f64)) -> Ordering {
-    match (a.0, b.0) {
-        (true, true) => b.1.total_cmp(&a.1),
-        (fill, other) => other.cmp(&fill),
-    }
-}
-
-/// The area within an outline, in square pixels.
-pub(super) fn area(points: &[Point]) -> f64 {
-    polygon::signed_area(points).abs()
-}
-
 fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    /// A solid square, in a list of strokes.
+    fn square(track: usize, side: f64) -> Value {
+        let points = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
+        json!({"track": track, "points": points, "closed": true, "fill": true, "colour": [1, 0, 0]})
+    }
+
+    fn document(fields: &Value) -> Document {
+        let mut text = json!({"rototoon": 1, "parts": [],
+            "footage": {"pattern": "%d.png", "first": 0, "last": 2, "fps": 12, "width": 64, "height": 64}});
+        text.as_object_mut().unwrap().extend(fields.as_object().unwrap().clone());
+        Document::parse(&text.to_string(), "p").unwrap()
+    }
+
+    /// The order of the strokes of each frame, and that of an SVG file.
+    fn orders(fields: &Value) -> (Vec<Vec<String>>, Vec<String>) {
+        let document = document(fields);
+        let names = |own: &Vec<Seen>| own.iter().map(|seen| seen.id.to_string()).collect();
+        let exported = to_export(&document).unwrap().into_iter().map(|stroke| stroke.name).collect();
+        (strokes(&document).unwrap().values().map(names).collect(), exported)
+    }
+
+    fn names(tracks: &[usize]) -> Vec<String> {
+        tracks.iter().map(|track| format!("stroke {track}")).collect()
+    }
+
+    #[test]
+    fn solid_shapes_keep_the_order_of_the_document_whatever_their_size() {
+        let drawing = |frame, side| json!({"frame": frame, "strokes": [square(0, side), square(1, 30.0)]});
+        let expected = (vec![names(&[0, 1]); 3], names(&[0, 1]));
+        let traced = json!({"traced": [drawing(0, 10.0), drawing(1, 30.0), drawing(2, 60.0)]});
+        assert_eq!(orders(&traced), expected);
+        let tweened = json!({"drawings": [drawing(0, 10.0), drawing(2, 60.0)], "in_betweens": [drawing(1, 40.0)],
+            "matches": [{"frame": 0, "next": 2, "tracks": [[0, 1], [0, 1]]}]});
+        assert_eq!(orders(&tweened), expected);
+    }
+
+    #[test]
+    fn fills_are_behind_lines_on_all_frames_or_on_none() {
+        let line = json!({"track": 7, "points": [[0, 0], [9, 9]], "closed": false});
+        let outlined =
+            json!({"track": 9, "points": [[1, 1], [5, 1], [5, 5]], "closed": true, "fill_colour": [0, 1, 0]});
+        let mut traced = [0, 1, 2].map(|frame| json!({"frame": frame, "strokes": [line, square(0, 9.0)]}));
+        assert_eq!(orders(&json!({"traced": traced})), (vec![names(&[0, 7]); 3], names(&[0, 7])));
+        traced[1]["strokes"].as_array_mut().unwrap().push(outlined);
+        let found = orders(&json!({"traced": traced}));
+        assert_eq!(found, (vec![names(&[7, 0]), names(&[7, 0, 9]), names(&[7, 0])], names(&[7, 0, 9])));
+    }
 }

@@ -2,6 +2,7 @@
 
 mod beside;
 mod kept;
+mod layers;
 mod on_keys;
 mod own;
 mod steps;
@@ -14,7 +15,6 @@ pub use on_keys::trace_drawings;
 use super::holds::{Holds, SHARE, Stretch};
 use super::keeping::Earlier;
 use super::seen::Noted;
-use super::strokes::{area, behind};
 use super::{PipelineError, frames, frames_of, gaps};
 use crate::lines::{Drawing, Options, Stroke, Tracked};
 use crate::project::Document;
@@ -25,7 +25,6 @@ use crate::scene::{FrameNumber, FrameSource, Progress};
 use beside::{Beside, beside, renamed};
 pub(super) use kept::of_picture;
 use kept::{Numbers, Span};
-use std::cmp::Ordering;
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
@@ -156,6 +155,8 @@ impl Tracing<'_> {
         [before, behind]: &[Option<Beside>; 2],
     ) -> Result<Vec<TracedDrawing>, PipelineError> {
         let new = self.next;
+        let beside = [before, behind].into_iter().flatten().filter(|known| known.is_drawn()).map(|known| known.frame);
+        let by_hand = self.drawn.iter().map(|drawing| drawing.frame).chain(beside).collect();
         let mut drawn = std::mem::take(&mut self.drawn).into_iter();
         let mut found = Found::new();
         let keep =
@@ -180,6 +181,7 @@ impl Tracing<'_> {
             }
         }
         self.progress.report("Tracing", 1.0)?;
+        layers::arrange(&mut found, &by_hand);
         let found = held(found, *range.end());
         let within = found.into_iter().filter(|(frame, _)| range.contains(frame));
         Ok(within.map(|(frame, strokes)| written(frame, &strokes)).collect())
@@ -341,17 +343,7 @@ fn written(frame: FrameNumber, strokes: &[Tracked]) -> TracedDrawing {
         fill: stroke.fill,
         fill_colour: stroke.fill_colour,
     };
-    let mut strokes: Vec<Tracked> = strokes.to_vec();
-    // A line with a fill of its own hides what is drawn before it, so such a drawing keeps its order.
-    if strokes.iter().all(|tracked| tracked.stroke.fill_colour.is_none()) {
-        strokes.sort_by(|a, b| behind_first(&a.stroke, &b.stroke));
-    }
     TracedDrawing { frame, strokes: strokes.iter().map(stroke).collect() }
-}
-
-/// The order of strokes on a drawing: what is farther back comes first.
-fn behind_first(a: &Stroke, b: &Stroke) -> Ordering {
-    behind((a.fill, area(&a.points)), (b.fill, area(&b.points)))
 }
 
 fn wrong(error: &dyn Display) -> PipelineError {

@@ -1,7 +1,7 @@
 //! The picture of the parts, or of painted regions and strokes, at a time, in pixels with y turned down.
 //!
 //! Mattes and cutouts are made of layers, from the farthest part to the nearest, and parts of equal depth in the document's
-//! order. Neighbouring parts without settings and feather of their own are one layer: their union is exact. In ids the parts share each
+//! order. Parts without settings and feather of their own are one layer, unless one between them is subtracted or intersected: their union is exact. In ids the parts share each
 //! pixel by area, as in the command line's ids. If they are grown or feathered, nearer ones are laid over farther ones.
 
 use super::edit::order;
@@ -11,7 +11,7 @@ use super::settings::{Output, Settings};
 use super::state::PartLook;
 use crate::pixels::{CLEAR, Pixel};
 use rototoon::geometry::Point;
-use rototoon::render::composite::{Layer, LayerRows, Layers};
+use rototoon::render::composite::{Blend, Layer, LayerRows, Layers};
 use rototoon::render::coverage::Window;
 use rototoon::render::mask::{Bounds, Mask};
 use rototoon::render::matte::feather_pieces;
@@ -239,13 +239,19 @@ impl Drawing<'_> {
         if self.settings.shown { order } else { Vec::new() }
     }
 
-    /// The layers of parts in order.
+    /// The layers of parts in order. Neighbours that are added give the same in any order, so those without settings are one mask: parts that touch have
+    /// no seam, whatever part lies between them.
     fn layers(&self, order: &[usize]) -> Layers {
         let mut layers = Vec::new();
         let closed: Vec<usize> = order.iter().copied().filter(|&part| self.scene.parts[part].closed).collect();
-        for parts in closed.chunk_by(|&a, &b| self.is_plain(a) && self.is_plain(b)) {
-            let (look, mask) = (self.look(parts[0]), self.mask(parts));
-            layers.push(Layer { mask, opacity: look.opacity as f32, invert: look.invert, blend: look.blend });
+        let is_added = |part: usize| self.look(part).blend == Blend::Add;
+        for added in closed.chunk_by(|&a, &b| is_added(a) && is_added(b)) {
+            let (plain, own): (Vec<usize>, Vec<usize>) = added.iter().partition(|&&part| self.is_plain(part));
+            let masks = (!plain.is_empty()).then_some(&plain[..]).into_iter().chain(own.chunks(1));
+            layers.extend(masks.map(|parts| {
+                let (look, mask) = (self.look(parts[0]), self.mask(parts));
+                Layer { mask, opacity: look.opacity as f32, invert: look.invert, blend: look.blend }
+            }));
         }
         Layers(layers)
     }

@@ -46,6 +46,22 @@ fn outer_edge(effect: &mut Effect) -> Option<f64> {
 }
 
 #[test]
+fn a_soft_part_whose_depth_is_between_two_others_leaves_no_seam_between_them() {
+    let host = host();
+    let square = |name: &str, depth: f64, left: f64, right: f64| {
+        part(name, depth, true, move |_| vec![p(left, 12.0), p(right, 12.0), p(right, 36.0), p(left, 36.0)])
+    };
+    let mut parts =
+        vec![square("coat", 0.0, 6.0, 18.5), square("shadow", 1.0, 44.0, 56.0), square("leg", 2.0, 18.5, 30.0)];
+    parts[1].feather = vec![3.0; 4];
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set_text("document", &Document::new(Scene { footage: footage(), parts }).to_json());
+    effect.set("output", &[MATTE]);
+    let row = row(&host, &mut effect);
+    assert!(row[6..30].iter().all(|value| *value > 0.999) && row[42] > 0.0 && row[42] < 1.0, "{row:?}");
+}
+
+#[test]
 fn a_feather_is_dragged_out_of_points_and_seen_in_the_matte() {
     let host = host();
     let mut effect = node(&host);

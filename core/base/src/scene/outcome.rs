@@ -4,7 +4,7 @@
 //! share of its points that are expected to be. A contour is *sure* if that share is at least [`SURE`], *lost* if it is
 //! below [`LOST`], and *doubtful* between them. Keys are the artist's, and beyond doubt. A key that was changed after tracking
 //! is another contour than the track there, which all later stages use: that frame is lost until the part is tracked again. A
-//! part with one key is lost on the frames beyond its track where it needs a key.
+//! part with one key is lost on the frames beyond its track where it needs a key. Where a part is absent nothing became of it, whatever an older track says.
 //!
 //! Everything that speaks of lost parts uses these bounds: the command line, the reports and the Blender add-on.
 
@@ -51,9 +51,9 @@ impl Verdict {
         }
     }
 
-    /// Of a part's tracked contour on a frame. None on a key, and where nothing was tracked.
+    /// Of a part's tracked contour on a frame. None on a key, where the part is absent, and where nothing was tracked.
     pub fn on(part: &Part, frame: FrameNumber) -> Option<Self> {
-        let points = part.confidence.get(&frame).filter(|_| !part.keys.contains_key(&frame))?;
+        let points = part.confidence.get(&frame).filter(|_| counts(part, frame))?;
         mean(points).map(Self::of)
     }
 }
@@ -65,7 +65,8 @@ impl Outcome {
         for (frame, confidence) in confidence(part) {
             outcome.of_verdict(Verdict::of(confidence)).push(frame);
         }
-        outcome.lost.extend(part.wants_key.iter().filter(|frame| !part.confidence.contains_key(frame)));
+        let wanted = part.wants_key.iter().filter(|frame| !part.confidence.contains_key(frame));
+        outcome.lost.extend(wanted.filter(|&&frame| !part.is_absent(frame)));
         outcome.lost.extend(part.outdated());
         outcome.lost.sort_unstable();
         outcome
@@ -80,9 +81,14 @@ impl Outcome {
     }
 }
 
-/// The mean confidence of a part's tracked contours by frame, without keys.
+/// Whether the confidence of a part on a frame says something of it: a key is beyond doubt, and an absent part has no contour.
+fn counts(part: &Part, frame: FrameNumber) -> bool {
+    !part.keys.contains_key(&frame) && !part.is_absent(frame)
+}
+
+/// The mean confidence of a part's tracked contours by frame, without keys and frames on which it is absent.
 pub fn confidence(part: &Part) -> BTreeMap<FrameNumber, f64> {
-    let tracked = part.confidence.iter().filter(|(frame, _)| !part.keys.contains_key(frame));
+    let tracked = part.confidence.iter().filter(|(frame, _)| counts(part, **frame));
     tracked.filter_map(|(&frame, points)| Some((frame, mean(points)?))).collect()
 }
 
@@ -116,5 +122,14 @@ mod tests {
         assert_eq!(on, [None, Some(Sure), Some(Doubtful), Some(Lost), Some(Lost), None]);
         part.confidence.insert(6, Vec::new());
         assert_eq!(Verdict::on(&part, 6), None, "a contour without points");
+    }
+
+    #[test]
+    fn nothing_became_of_a_part_where_it_is_absent() {
+        let confidence = [(1, vec![0.1]), (2, vec![0.1]), (3, vec![1.0])].into();
+        let part = Part { confidence, wants_key: vec![0, 4], absent: vec![[2, 4]], ..Part::default() };
+        let expected = Outcome { lost: vec![0, 1], ..Outcome::default() };
+        assert_eq!(Outcome::of(&part), expected);
+        assert_eq!([1, 2, 3].map(|frame| Verdict::on(&part, frame)), [Some(Verdict::Lost), None, None]);
     }
 }

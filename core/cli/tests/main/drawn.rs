@@ -277,29 +277,92 @@ fn a_sheet_shows_strokes_and_paint() {
     assert_eq!(sheet.get_pixel(9 + 33, 30 + 25).0, [255; 3]);
 }
 
+/// The value behind an attribute of an OpenEXR file: its name, type and size as in the file.
+fn attribute<'a>(bytes: &'a mut [u8], name: &[u8]) -> Option<&'a mut [u8]> {
+    let at = bytes.windows(name.len()).position(|own| own == name)? + name.len();
+    Some(&mut bytes[at..])
+}
+
+const ASPECT: &[u8] = b"pixelAspectRatio\0float\0\x04\0\0\0";
+
+/// Writes a white frame of this pixel aspect.
+fn plate(path: &Path, aspect: f32) {
+    ImageBuffer::from_pixel(40, 30, Rgb([1f32; 3])).save(path).unwrap();
+    let mut bytes = fs::read(path).unwrap();
+    attribute(&mut bytes, ASPECT).unwrap()[..4].copy_from_slice(&aspect.to_le_bytes());
+    fs::write(path, bytes).unwrap();
+}
+
+/// The pixel aspect of an OpenEXR file.
+fn aspect(path: &Path) -> f32 {
+    let mut bytes = fs::read(path).unwrap();
+    f32::from_le_bytes(attribute(&mut bytes, ASPECT).unwrap()[..4].try_into().unwrap())
+}
+
+/// A part that is keyed on both frames.
+fn coat() -> Value {
+    let keys = json!({"0": [[5, 5], [30, 5], [30, 20]], "1": [[6, 5], [31, 5], [31, 20]]});
+    json!({"parts": [{"name": "coat", "closed": true, "keys": keys}]})
+}
+
 #[test]
 fn pictures_have_the_pixel_aspect_of_the_footage() {
     let (folder, path) = project(drawn());
     let text = fs::read_to_string(&path).unwrap().replace("f_%d.png", "f_%d.exr");
     fs::write(&path, text).unwrap();
-    let aspect = b"pixelAspectRatio\0float\0\x04\0\0\0";
-    let place = |bytes: &[u8]| bytes.windows(aspect.len()).position(|own| own == aspect).unwrap() + aspect.len();
-    for frame in 0..2 {
-        let frame = folder.path().join(format!("f_{frame}.exr"));
-        ImageBuffer::from_pixel(40, 30, Rgb([1f32; 3])).save(&frame).unwrap();
-        let mut bytes = fs::read(&frame).unwrap();
-        let at = place(&bytes);
-        bytes[at..at + 4].copy_from_slice(&2f32.to_le_bytes());
-        fs::write(&frame, bytes).unwrap();
-    }
+    (0..2).for_each(|frame| plate(&folder.path().join(format!("f_{frame}.exr")), 2.0));
     for what in ["cutout", "matte", "ids", "paint", "overlay"] {
         let to = folder.path().join(format!("{what}.exr"));
         let output = render(&path, &to, &["--what", what, "--frames", "1"]);
         assert!(output.status.success(), "{}", told(&output));
+        assert_eq!(aspect(&to), 2.0, "{what}");
         let bytes = fs::read(to).unwrap();
-        assert_eq!(bytes[place(&bytes)..][..4], 2f32.to_le_bytes(), "{what}");
         let told = |text: &[u8]| bytes.windows(text.len()).any(|own| own == text);
         assert!(told(b"chromaticities\0chromaticities\0\x20\0\0\0") && told(b"framesPerSecond\0rational\0\x08\0\0\0"));
+    }
+}
+
+#[test]
+fn a_frame_without_a_file_has_the_pixel_aspect_of_the_footage() {
+    let (folder, path) = project(coat());
+    let text = fs::read_to_string(&path).unwrap().replace("f_%d.png", "f_%d.exr");
+    fs::write(&path, text).unwrap();
+    plate(&folder.path().join("f_1.exr"), 2.0);
+    for frames in ["0-1", "0"] {
+        let to = folder.path().join("m_%d.exr");
+        let output = render(&path, &to, &["--what", "matte", "--frames", frames]);
+        assert!(output.status.success(), "{}", told(&output));
+        assert_eq!(aspect(&folder.path().join("m_0.exr")), 2.0, "{frames}");
+    }
+    let to = folder.path().join("shapes.nk");
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_rototoon")).arg("export").arg(&path).arg("-o").arg(&to).output().unwrap();
+    assert!(output.status.success(), "{}", told(&output));
+    assert!(fs::read_to_string(to).unwrap().contains("format \"40 30 0 0 40 30 2 \""));
+}
+
+#[test]
+fn a_batch_exports_again_if_the_pixels_have_another_shape() {
+    let (folder, path) = project(coat());
+    let text = fs::read_to_string(&path).unwrap().replace("f_%d.png", "f_%d.exr");
+    fs::write(&path, text).unwrap();
+    let manifest = folder.path().join("night.json");
+    let shots = json!([{"name": "s", "project": "project.json"}]);
+    let steps = json!([{"do": "export", "to": "a.nk"}]);
+    fs::write(&manifest, json!({"rototoon_batch": 1, "steps": steps, "shots": shots}).to_string()).unwrap();
+    let results = folder.path().join("results");
+    for aspect in [1, 2] {
+        plate(&folder.path().join("f_0.exr"), aspect as f32);
+        let output = Command::new(env!("CARGO_BIN_EXE_rototoon"))
+            .arg("batch")
+            .arg(&manifest)
+            .arg("-o")
+            .arg(&results)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", told(&output));
+        let text = fs::read_to_string(results.join("s/a.nk")).unwrap();
+        assert!(text.contains(&format!("format \"40 30 0 0 40 30 {aspect} \"")), "{aspect}: {text}");
     }
 }
 

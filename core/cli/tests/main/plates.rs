@@ -143,6 +143,19 @@ fn pictures_are_drawn_around_a_gap_and_the_missing_ones_are_named() {
 }
 
 #[test]
+fn warnings_of_drawn_pictures_come_before_the_missing_ones() {
+    let cartoon = Cartoon::new();
+    let keys = json!({"0": square(8.0), "6": square(26.0)});
+    let document = cartoon.document("keys.json", json!([{"name": "near", "closed": true, "keys": keys}]));
+    fs::remove_file(cartoon.frame(2)).unwrap();
+    let to = cartoon.path("o.%d.png");
+    let said = bad(&["render", text(&document), "-o", text(&to)], 1);
+    let [warned, missing] =
+        ["not tracked on all frames between its keys", "6 of 7 frames were drawn"].map(|own| said.find(own));
+    assert!(warned.is_some() && missing > warned, "{said}");
+}
+
+#[test]
 fn a_sheet_marks_frames_without_a_picture_of_their_own() {
     let cartoon = Cartoon::new();
     let document = tracked(&cartoon);

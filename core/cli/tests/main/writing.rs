@@ -161,3 +161,31 @@ fn an_interrupt_leaves_no_incomplete_files() {
         assert_eq!(image::open(&file).unwrap().width(), 64, "{file:?}");
     }
 }
+
+#[test]
+fn folders_that_have_the_number_of_the_frame_are_looked_for_before_the_work() {
+    let cartoon = Cartoon::new();
+    let project = cartoon.keyed();
+    let pattern = cartoon.path("f_%d/m.png");
+    let words = ["render", text(&project), "-o", text(&pattern), "--what", "matte", "--frames", "1-2"];
+    fs::create_dir(cartoon.path("f_1")).unwrap();
+    let said = bad(&words, 1);
+    assert!(said.contains("f_2/m.png: cannot write: there is no folder"), "{said}");
+    assert!(!cartoon.path("f_1/m.png").exists());
+    fs::create_dir(cartoon.path("f_2")).unwrap();
+    good(&words);
+    assert!(cartoon.path("f_1/m.png").exists() && cartoon.path("f_2/m.png").exists());
+    fs::create_dir(cartoon.path("f_1001")).unwrap();
+    good(&[
+        "render",
+        text(&project),
+        "-o",
+        text(&pattern),
+        "--what",
+        "matte",
+        "--frames",
+        "1",
+        "--frame-offset",
+        "1000",
+    ]);
+}

@@ -238,7 +238,12 @@ pub fn peg_key_place(peg: &str, key: usize, frame: FrameNumber) -> String {
 
 /// A JSON list with one element in each line.
 pub(super) fn lines(values: impl Iterator<Item = Value>) -> String {
-    let lines: Vec<String> = values.map(|value| format!("\n    {value}")).collect();
+    lines_of(values.map(|value| value.to_string()))
+}
+
+/// A JSON list of these texts, one in each line.
+pub(super) fn lines_of(elements: impl Iterator<Item = String>) -> String {
+    let lines: Vec<String> = elements.map(|element| format!("\n    {element}")).collect();
     if lines.is_empty() { "[]".into() } else { format!("[{}\n  ]", lines.join(",")) }
 }
 

@@ -7,7 +7,8 @@
 use super::super::keeping::{Keeping, Pictured};
 use super::super::{PipelineError, frames, memory};
 use super::kept::is_stroke;
-use super::{behind_first, wrong};
+use super::layers::behind_first;
+use super::wrong;
 use crate::lines::{Options, Stroke, trace as traced};
 use crate::project::Document;
 use crate::project::drawings::{Drawing, DrawnStroke};
