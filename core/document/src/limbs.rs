@@ -135,12 +135,20 @@ impl Document {
     fn mark(&self, value: &Value, place: &str) -> Result<DepthMark, FieldError> {
         let fields = object(value, place)?;
         let part = |name: &str| self.part_in(fields, place, name);
-        Ok(DepthMark {
+        let mark = DepthMark {
             front: part("front")?,
             behind: part("behind")?,
             first: given(fields, place, "first", frame)?.unwrap_or(FrameNumber::MIN),
             last: given(fields, place, "last", frame)?.unwrap_or(FrameNumber::MAX),
-        })
+        };
+        if mark.front == mark.behind {
+            return Err(wrong(&format!("{place}.behind"), &format!("{:?}", mark.behind), "another part than `front`"));
+        }
+        if mark.first > mark.last {
+            let expected = format!("a frame not before `first`, {}", mark.first);
+            return Err(wrong(&format!("{place}.last"), &mark.last.to_string(), &expected));
+        }
+        Ok(mark)
     }
 }
 
@@ -352,6 +360,18 @@ mod tests {
         assert_eq!(
             said(r#""limb_swaps": [[5, 2]]"#),
             "limb_swaps[0]: found 5 and 2, expected two frames, the first and the last"
+        );
+        assert_eq!(
+            said(r#""depth_marks": [{"front": "arm", "behind": "arm"}]"#),
+            "depth_marks[0].behind: found \"arm\", expected another part than `front`"
+        );
+        assert_eq!(
+            said(r#""depth_marks": [{"front": "arm", "behind": "body", "first": 9, "last": 0}]"#),
+            "depth_marks[0].last: found 0, expected a frame not before `first`, 9"
+        );
+        assert_eq!(
+            said(r#""follows": [{"part": "arm", "of": "body", "what": "root"}]"#),
+            "follows[0].what: found \"root\" beside \"of\", expected one of the two fields"
         );
         assert_eq!(
             said(r#""depth_marks": [{"front": "arm", "behind": "leg"}]"#),
