@@ -159,3 +159,22 @@ def test_a_palette_is_checked_before_anything_changes(addon, painted, tmp_path):
         with pytest.raises(RuntimeError, match=f"{field}: found"):
             bpy.ops.rototoon.import_document(filepath=str(path))
     assert len(bpy.data.objects) == count
+
+
+def test_strokes_of_an_object_without_materials_keep_their_look(addon, painted, tmp_path):  # noqa: F811
+    path = tmp_path / "paint.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    document["parts"] = [{"name": "arm", "closed": True, "keys": {str(document["footage"]["first"]): [[10, 10], [50, 10], [50, 50]]}}]
+    path.write_text(json.dumps(document))
+    bare = painted.copy()
+    bare.data = painted.data.copy()
+    bare.data.materials.clear()
+    bpy.context.collection.objects.link(bare)
+    bpy.context.view_layer.objects.active = bare
+    for layer in list(bare.data.layers):
+        bare.data.layers.remove(layer)
+    bpy.ops.rototoon.import_document(filepath=str(path), into="ACTIVE")
+    contours = attribute(addon, bare, "Contours", 1, "material_index")
+    assert [bare.data.materials[i] for i in contours.tolist()] == [None]
+    assert set(by_material(addon, bare)) == set(document["palette"])
