@@ -9,7 +9,8 @@ is the similarity (turn and scale) that carries the stroke from the one frame to
 weighted by a Gaussian of the distance in share (as in moving least squares, Schaefer, McPhail & Warren 2006). So an edit moves, turns and
 grows with its own stretch of the stroke. A frame keeps its own points; d is interpolated between the edited ones.
 
-Limits: curves with handles or knots get looks, and are deleted, but not reshaped. A stroke that was drawn anew has no such marks: carry it.
+Limits: curves with handles or knots, on the edited frame or on the other one, give and get looks, and are deleted, but not reshaped: their points
+are no points of the line. A stroke that was drawn anew has no such marks: carry it.
 """
 
 from __future__ import annotations
@@ -46,15 +47,31 @@ class Edit:
     """Layer points to pixels and back, on that frame."""
     edited: list[int]
     """Indices of the strokes that differ from what was traced."""
-    touched: set[int]
-    """Numbers of all strokes that they come from."""
     deleted: set[int]
     """Numbers of strokes that are not there any more."""
     slots: marks.Slots
     """The material slots of the object."""
+    moved: np.ndarray
+    """For each stroke: whether a point was moved."""
+    same: np.ndarray
+    """For each stroke: whether its look is the one that was noted."""
+    rigid: np.ndarray
+    """For each stroke: whether it only gives its look, since its points do not tell how its line was reshaped."""
 
     def __bool__(self) -> bool:
         return bool(self.edited or self.deleted)
+
+    def reshaped(self) -> list[int]:
+        """The edited strokes whose form is done on other frames."""
+        return [i for i in self.edited if not self.rigid[i]]
+
+    def not_reshaped(self) -> list[int]:
+        """The edited strokes of which points were moved, and that only give their look."""
+        return [i for i in self.edited if self.rigid[i] and self.moved[i]]
+
+    def numbers(self, i: int) -> set[int]:
+        """Numbers of the strokes that stroke `i` comes from."""
+        return _numbers(self.content, i)
 
 
 @dataclass
@@ -73,30 +90,47 @@ def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slot
     """The edit of a drawing. `before` are the numbers of its strokes when it was traced. Of edited strokes only the `chosen` ones
     count."""
     lines = content.point.get(gp.LINE)
+    none = np.zeros(len(content.sizes), bool)
     if lines is None:
-        return Edit(content, mapping, [], set(), set(), slots)
+        return Edit(content, mapping, [], set(), slots, none, ~none, none)
     starts, tracks = content.starts, content.strokes(gp.TRACK)
-    same = dr.has_looks(content, slots)
-    moved = (content.point[gp.TRACKED] != content.point["position"]).any(1)
+    same, rigid = dr.has_looks(content, slots), _rigid(content)
+    away = (content.point[gp.TRACKED] != content.point["position"]).any(1)
     twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
-    edited, touched = [], set()
+    moved, edited = none.copy(), []
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
-        own = set(lines[a:b].tolist()) - {0}
+        own = _numbers(content, i)
         if not own or (chosen is not None and not chosen[i]):
             continue
+        moved[i] = away[a:b].any() or (lines[a:b] == 0).any()
         along = content.point[gp.ALONG][a:b]
         cut = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
-        if cut or moved[a:b].any() or (lines[a:b] == 0).any() or not same[i]:
+        if moved[i] or not same[i] or (cut and not rigid[i]):
             edited.append(i)
-            touched |= own
     there = set(lines.tolist()) | set(tracks.tolist())
-    return Edit(content, mapping, edited, touched, set(before) - there if chosen is None else set(), slots)
+    return Edit(content, mapping, edited, set(before) - there if chosen is None else set(), slots, moved, same, rigid)
+
+
+def _numbers(content: st.Content, i: int) -> set[int]:
+    return set(content.point[gp.LINE][content.starts[i] : content.starts[i + 1]].tolist()) - {0}
+
+
+def _rigid(content: st.Content) -> np.ndarray:
+    """For each stroke: whether it is a curve, or comes from a number of which another stroke is one."""
+    rigid = content.types != st.POLY
+    owns = [_numbers(content, i) for i in range(len(rigid))]
+    numbers: set[int] = set()
+    while not (whole := set().union(*(owns[i] for i in np.flatnonzero(rigid)))) <= numbers:
+        numbers = whole
+        rigid = rigid | np.array([bool(own & numbers) for own in owns])
+    return rigid
 
 
 def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
     """The number of each edited stroke: its own, but that of a second piece is new, from `fresh` on."""
-    tracks, taken, result = edit.content.strokes(gp.TRACK), set(), {}
-    for i in edit.edited:
+    tracks, taken = edit.content.strokes(gp.TRACK), set()
+    result = {i: int(tracks[i]) for i in edit.edited if edit.rigid[i]}
+    for i in edit.reshaped():
         number = int(tracks[i])
         if number == 0 or number in taken:
             number, fresh = fresh, fresh + 1
@@ -112,14 +146,17 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
     made: list[tuple[int, st.Content]] = []
     left_out = 0
     if not shape:
-        made = _looked(edit, content) if looks else []
+        made = _looked(edit, content, edit.edited) if looks else []
         gone[[place for place, _ in made]] = True
     elif edit.edited:
+        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]]) if looks else []
+        gone[[place for place, _ in made]] = True
         pixels = to_complex(mapping, content.point["position"])
-        there = {number: _stroke(content, pixels, number) for number in edit.touched}
+        touched = set().union(*(edit.numbers(i) for i in edit.reshaped()))
+        there = {number: _stroke(content, pixels, number) for number in touched}
         before = to_complex(edit.mapping, edit.content.point[gp.TRACKED])
         now = to_complex(edit.mapping, edit.content.point["position"])
-        for i in edit.edited:
+        for i in edit.reshaped():
             new = _made(edit, i, numbers[i], content, there, before, now, mapping, looks)
             if new is None:
                 left_out += 1
@@ -127,7 +164,7 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
                 made.append(new)
         # Curves with handles or knots stay.
         stay = [number for number, each in there.items() if each is None]
-        gone |= np.isin(tracks, sorted(edit.touched)) & ~np.isin(tracks, stay)
+        gone |= np.isin(tracks, sorted(touched)) & ~np.isin(tracks, stay)
     return _assembled(content, gone, made, edit.slots), left_out
 
 
@@ -177,7 +214,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     found: list[Run] = []
     start = 0
     for k in range(1, len(lines) + 1):
-        if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, start, k):
+        if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, lines, start, k):
             continue
         span = slice(start, k)
         found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span]))
@@ -185,10 +222,11 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     return found
 
 
-def _turns(along: np.ndarray, start: int, k: int) -> bool:
-    """Whether the share jumps at point `k`, as at the seam of a closed stroke."""
+def _turns(along: np.ndarray, lines: np.ndarray, start: int, k: int) -> bool:
+    """Whether the share jumps at point `k`, as at the seam of a closed stroke. A long step between few points goes on in its direction."""
     step = along[k] - along[k - 1]
-    return abs(step) > 0.5 or (k - start > 1 and step * (along[k - 1] - along[start]) < 0)
+    after = along[k + 1] - along[k] if k + 1 < len(along) and lines[k + 1] == lines[k] else 0.0
+    return (abs(step) > 0.5 and step * after < 0) or (k - start > 1 and step * (along[k - 1] - along[start]) < 0)
 
 
 def similarity(was: np.ndarray, here: np.ndarray, samples: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
@@ -208,8 +246,7 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple
     cannot be reshaped."""
     parts = [run for run in runs(edit, i, before, now) if there.get(run.number) is not None]
     if not parts:
-        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
-        return None if np.isin(content.strokes(gp.TRACK), sorted(own)).any() else (0, None)
+        return None if np.isin(content.strokes(gp.TRACK), sorted(edit.numbers(i))).any() else (0, None)
     base = there[parts[0].number]
     line, where = _reshaped(edit, parts, there, before)
     if len(line) < 2:
@@ -223,12 +260,11 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple
     return base.index, made
 
 
-def _looked(edit: Edit, content: st.Content) -> list[tuple[int, st.Content]]:
-    """The strokes of a drawing that get a look only, with their indices."""
+def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
+    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices."""
     tracks, made = content.strokes(gp.TRACK), {}
-    for i in edit.edited:
-        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
-        for place in np.flatnonzero(np.isin(tracks, sorted(own)) & (content.sizes > 0)):
+    for i in which:
+        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(i))) & (content.sizes > 0)):
             made[int(place)] = st.chosen(content, [place])
             _look_like(made[int(place)], edit.content, i)
     return sorted(made.items(), key=lambda each: each[0])

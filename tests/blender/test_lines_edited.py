@@ -192,3 +192,45 @@ def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
         found = [np.linalg.norm(np.diff(now[n], axis=0), axis=1).sum() for n in (arm, 7)]
         assert found[0] == pytest.approx(length / 2, rel=0.1) and found[1] == pytest.approx(length / 2, rel=0.1)
         assert away(np.vstack([now[arm], now[7]]), before[frame]) < 1.5
+
+
+def radii_of(addon, ob, frame):
+    """The radii of the points by stroke number."""
+    handle = handle_of(addon, ob, "Lines", frame)
+    gp = addon("blender.grease_pencil")
+    starts = gp.offsets(handle)
+    numbers, radii = gp.value(handle, gp.TRACK, len(starts) - 1).tolist(), gp.value(handle, "radius", int(starts[-1]))
+    return {number: radii[a:b] for number, a, b in zip(numbers, starts, starts[1:])}
+
+
+def test_fitted_strokes_give_their_look_and_no_shape(addon, traced):
+    gp = addon("blender.grease_pencil")
+    bpy.ops.rototoon.fit_strokes()
+    addon("common.reports").take()
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+    handle = handle_of(addon, traced, "Lines", 1)
+    total = int(gp.offsets(handle)[-1])
+    gp.put(handle, "radius", np.full(total, 0.3))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text == "6 edited strokes, on 5 other frames"
+    for frame in range(2, 7):
+        now, radii = ls.strokes(addon, traced, "Lines", frame), radii_of(addon, traced, frame)
+        assert list(now) == list(before[frame])
+        for number, points in now.items():
+            # A stroke that became a polyline of its corners is reshaped as others: by nothing.
+            assert np.allclose(points, before[frame][number], atol=1e-2) and np.allclose(radii[number], 0.3)
+
+
+def test_moved_points_of_a_fitted_stroke_are_named(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    bpy.ops.rototoon.fit_strokes()
+    content = strokes.read(handle_of(addon, traced, "Lines", 1))
+    curve = int(content.strokes(gp.TRACK)[np.flatnonzero(content.types == strokes.NURBS)[0]])
+    edit(addon, traced, 1, curve, lambda points: points + np.float32(0.2))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame)[curve] for frame in range(2, 7)}
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert any("not reshaped: 1 stroke is a curve" in each.text for each in addon("common.reports").take())
+    assert all(np.array_equal(ls.strokes(addon, traced, "Lines", frame)[curve], before[frame]) for frame in before)

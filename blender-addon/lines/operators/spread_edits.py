@@ -73,7 +73,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         if not self.delete:
             edit.deleted = set()
         if not (self.shape or self.look):
-            edit.edited, edit.touched = [], set()
+            edit.edited = []
         return layer.name, shown, edit, contents, mapper
 
     def _steps(self):
@@ -110,8 +110,9 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         records.write(self._ob.data, kept)
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
-        if self._left_out:
-            curves = "1 stroke is a curve" if self._left_out == 1 else f"{self._left_out} strokes are curves"
+        left_out = self._left_out + sum(len(edit.not_reshaped()) for _, _, edit, *_ in self._work_on if self.shape)
+        if left_out:
+            curves = "1 stroke is a curve" if left_out == 1 else f"{left_out} strokes are curves"
             self.warn(f"not reshaped: {curves} with handles or knots")
         edited = sum(len(edit.edited) for _, _, edit, *_ in self._work_on)
         deleted = sum(len(edit.deleted) for _, _, edit, *_ in self._work_on)

@@ -4,12 +4,13 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, projection, seen, selection
+from ...blender import guard, marks, projection, seen, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined
+from ...lines import rototoon_changes as traced_changes
 from ...tween import rototoon_changes
 from .. import fitting, weights
 
@@ -90,12 +91,14 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         return gp.frame_numbers(layer, selected=self.frames == "SELECTED")
 
     def _steps(self):
+        slots = marks.Slots(self._ob.data)
         for index, (name, number) in enumerate(self._drawings):
             layer = gp.find_layer(self._ob, name)
             handle = gp.drawings(layer)[number][0]
             content = st.read(handle)
             fitted = fitting.fit(content, self._wanted(handle, content), *self._scale(layer, content))
             if fitted is not None:
+                traced_changes.follow(content, fitted.content, np.arange(len(content.sizes)), slots)
                 self._done.append((name, number, fitted))
                 self._seen.note(name, number, content)
             yield (index + 1) / len(self._drawings)
@@ -127,6 +130,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         with rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
+        marks.remember(self._ob.data)
         self._ob.data.update_tag()
         strokes = sum(fitted.fitted for *_, fitted in self._done)
         if not strokes:
