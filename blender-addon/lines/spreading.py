@@ -10,7 +10,7 @@ weighted by a Gaussian of the distance in share (as in moving least squares, Sch
 grows with its own stretch of the stroke. A frame keeps its own points; d is interpolated between the edited ones.
 
 Limits: curves with handles or knots, on the edited frame or on the other one, give and get looks, and are deleted, but not reshaped: their points
-are no points of the line. A stroke that was drawn anew has no such marks: carry it.
+are no points of the line. What Remove Hidden Lines has left of a stroke on the edited frame gives its look only. A stroke that was drawn anew has no such marks: carry it.
 """
 
 from __future__ import annotations
@@ -116,14 +116,19 @@ def _numbers(content: st.Content, i: int) -> set[int]:
 
 
 def _rigid(content: st.Content) -> np.ndarray:
-    """For each stroke: whether it is a curve, or comes from a number of which another stroke is one."""
-    rigid = content.types != st.POLY
+    """For each stroke: whether it is a curve or what Remove Hidden Lines has left, or comes from a number of which another stroke is one."""
+    rigid = (content.types != st.POLY) | left_by_rototoon(content)
     owns = [_numbers(content, i) for i in range(len(rigid))]
     numbers: set[int] = set()
     while not (whole := set().union(*(owns[i] for i in np.flatnonzero(rigid)))) <= numbers:
         numbers = whole
         rigid = rigid | np.array([bool(own & numbers) for own in owns])
     return rigid
+
+
+def left_by_rototoon(content: st.Content) -> np.ndarray:
+    """For each stroke: whether Remove Hidden Lines has left it of a stroke, as a piece or as the outline of a fill."""
+    return content.strokes(gp.INTERVAL).any(1)
 
 
 def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
@@ -256,17 +261,16 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple
     made.set_strokes("cyclic", edit.content.strokes("cyclic")[i : i + 1])
     made.set_strokes(gp.TRACK, np.array([number], np.int32))
     if looks:
-        _look_like(made, edit.content, i)
+        _look_like(made, edit.content, _sources(edit.content, [i])[0])
     return base.index, made
 
 
 def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
     """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices."""
     tracks, made = content.strokes(gp.TRACK), {}
-    for i in which:
-        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(i))) & (content.sizes > 0)):
-            made[int(place)] = st.chosen(content, [place])
-            _look_like(made[int(place)], edit.content, i)
+    for source in _sources(edit.content, which):
+        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0)):
+            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source)
     return sorted(made.items(), key=lambda each: each[0])
 
 
@@ -326,21 +330,66 @@ def _like(content: st.Content, base: _There, where: np.ndarray, points: np.ndarr
     return made
 
 
-def _look_like(made: st.Content, source: st.Content, i: int) -> None:
-    """Gives a stroke the look of stroke `i` of another drawing, by the share of the length."""
-    a, b = source.starts[i : i + 2]
-    where, known = dr.shares(made.point["position"]), dr.shares(source.point["position"][a:b])
-    for name in _looks_of(source):
-        if name in source.curve:
-            _have(made, source, name)
-            made.curve[name] = source.curve[name][i : i + 1].copy()
-        elif name in source.point:
-            own = source.point[name][a:b]
-            _have(made, source, name)
+@dataclass
+class _Source:
+    """Where a look comes from."""
+
+    stroke: int
+    """The stroke that gives what holds for a whole stroke."""
+    points: np.ndarray
+    """Indices of the points that give the rest, by their share."""
+    shares: np.ndarray
+    without: set[str]
+    """What is no look of the line: Remove Hidden Lines has changed it."""
+
+
+def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
+    """The sources of the looks of strokes. The pieces that Remove Hidden Lines has left of one stroke are one source."""
+    left, undrawn, tracks = left_by_rototoon(content), st.undrawn(content), content.strokes(gp.TRACK)
+    found, done = [], set()
+    for i in which:
+        if i in done:
+            continue
+        mine, without = np.array([i]), set()
+        if left[i] and undrawn[i]:
+            without = {"opacity"}
+        elif left[i]:
+            same = left & (tracks == tracks[i])
+            mine = np.flatnonzero(same & ~undrawn)
+            if (same & undrawn).any():
+                # The fill is with the outline alone.
+                without = {"fill_id" if gp.FILL_BY_ID else "material_index"}
+        done |= set(mine.tolist())
+        points, shares = st.ranges(content.starts[mine], content.sizes[mine]), np.concatenate([_shares(content, k) for k in mine])
+        order = np.argsort(shares, kind="stable")
+        found.append(_Source(i, points[order], shares[order], without))
+    return found
+
+
+def _shares(content: st.Content, i: int) -> np.ndarray:
+    """The shares of a stroke's points; of a piece that Remove Hidden Lines has left, on the whole stroke."""
+    span = slice(*content.starts[i : i + 2])
+    if gp.ALONG in content.point and left_by_rototoon(content)[i]:
+        return content.point[gp.ALONG][span].astype(np.float64)
+    return dr.shares(content.point["position"][span])
+
+
+def _look_like(made: st.Content, content: st.Content, source: _Source) -> None:
+    """Gives a stroke the look of strokes of another drawing, by the share of the length."""
+    where, known = _shares(made, 0), source.shares
+    for name in _looks_of(content):
+        if name in source.without:
+            continue
+        if name in content.curve:
+            _have(made, content, name)
+            made.curve[name] = content.curve[name][source.stroke : source.stroke + 1].copy()
+        elif name in content.point:
+            own = content.point[name][source.points]
+            _have(made, content, name)
             if own.dtype.kind != "f":
                 made.point[name] = own[np.abs(where[:, None] - known[None]).argmin(1)]
                 continue
-            columns = own.reshape(b - a, -1).astype(np.float64)
+            columns = own.reshape(len(own), -1).astype(np.float64)
             values = np.stack([np.interp(where, known, columns[:, k]) for k in range(columns.shape[1])], 1)
             made.point[name] = values.reshape((len(where), *own.shape[1:])).astype(own.dtype)
 

@@ -17,10 +17,11 @@ import numpy as np
 from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy, placement
+from ..blender import guard, hierarchy, marks, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
 from ..blender.seen import Seen, changed
+from ..lines import rototoon_changes as traced_changes
 
 SUFFIX = hierarchy.ASIDE
 """Suffix of the name of a layer with hidden lines."""
@@ -51,6 +52,8 @@ class Cut:
     """Whether anything was hidden."""
     pieces: int
     """Number of hidden parts."""
+    gone: set[int]
+    """Numbers (`rototoon_track`) of the strokes of which nothing is left."""
 
 
 def is_output(layer) -> bool:
@@ -176,7 +179,7 @@ def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     seen = mine[touched[stroke] & ~pieces.hidden[mine]]
     gone = mine[touched[stroke] & pieces.hidden[mine]]
     kept = np.flatnonzero(~touched | (entry.fills != 0))
-    content = _numbered(content, touched)
+    content, tracks = _numbered(content, touched), content.strokes(gp.TRACK)
     return Cut(
         entry.layer.name,
         frame,
@@ -185,6 +188,7 @@ def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
         _built(ob, entry, content, kept[:0], gone, pieces, touched),
         bool(touched.any()),
         len(gone),
+        set(tracks.tolist()) - set(tracks[kept].tolist()) - set(tracks[stroke[~pieces.hidden[mine]]].tolist()),
     )
 
 
@@ -219,6 +223,8 @@ def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces,
     result.curve = {name: values[source].copy() for name, values in content.curve.items()}
     _mark_parts(result, pieces, part, cut)
     _part_fills_from_lines(ob, result, part, entry.fills[source], touched[source])
+    if touched.any():
+        traced_changes.follow(content, result, source, marks.Slots(ob.data))
     return result
 
 
@@ -272,6 +278,9 @@ def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None
         opacity = result.point.get("opacity")
         opacity = gp.blank("opacity", int(result.starts[-1])) if opacity is None else opacity
         opacity[np.repeat(carrier, result.sizes)] = 0
+        intervals = result.strokes(gp.INTERVAL).copy()
+        intervals[carrier] = np.stack([np.zeros(carrier.sum()), result.sizes[carrier]], 1)
+        result.set_strokes(gp.INTERVAL, intervals)
         result.kinds.setdefault("opacity", "FLOAT")
         result.point["opacity"] = opacity
     lines = (part >= 0) & (fills != 0)
@@ -296,6 +305,15 @@ def own(ob, cuts: list[Cut], in_place: bool) -> dict[str, set[int]]:
             found.setdefault(each.layer, set()).add(each.source)
     kinds = {name: gp.drawings(gp.find_layer(ob, name)) for name in found}
     return {name: mine for name, frames in found.items() if (mine := {frame for frame in frames if kinds[name][frame][1] != gp.GENERATED})}
+
+
+def gone(cuts: list[Cut], in_place: bool) -> dict[str, dict[int, set[int]]]:
+    """By layer and frame that `write` will cut the numbers of the strokes of which nothing is left."""
+    found: dict[str, dict[int, set[int]]] = {}
+    for each in cuts:
+        if each.gone:
+            found.setdefault(each.layer, {})[each.source if in_place else each.frame] = each.gone
+    return found
 
 
 def need_unchanged(ob, cuts: list[Cut], seen: Seen) -> None:

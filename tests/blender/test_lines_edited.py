@@ -234,3 +234,93 @@ def test_moved_points_of_a_fitted_stroke_are_named(addon, traced):
     bpy.ops.rototoon.spread_edits()
     assert any("not reshaped: 1 stroke is a curve" in each.text for each in addon("common.reports").take())
     assert all(np.array_equal(ls.strokes(addon, traced, "Lines", frame)[curve], before[frame]) for frame in before)
+
+
+def cover(addon, ob, frame):
+    """Something filled that passes in front of both eyes and of a bit of two other lines, on this frame only."""
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    turn = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    shape = np.stack([114.8 + 45 * np.cos(turn), 73.5 + 18 * np.sin(turn)], 1)
+    ls.put(addon, ob, "Passing", frame, [(shape, True)])
+    handle = handle_of(addon, ob, "Passing", frame)
+    content = strokes.read(handle)
+    if gp.FILL_BY_ID:
+        content.set_strokes("fill_id", np.array([1], np.int32))
+    else:
+        material = ob.data.materials[0].copy()
+        material.grease_pencil.show_fill = True
+        ob.data.materials.append(material)
+        content.set_strokes("material_index", np.array([len(ob.data.materials) - 1], np.int32))
+    strokes.write(handle, content)
+    gp.layer(ob, "Passing").frames.new(frame + 1)
+    ob.data.layers.active = ob.data.layers["Lines"]
+
+
+@pytest.mark.every_version
+@pytest.mark.parametrize("frames", ["CURRENT", "RANGE"])
+def test_hidden_lines_are_no_edit(addon, traced, frames):
+    gp = addon("blender.grease_pencil")
+    cover(addon, traced, 2)
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines(frames=frames)
+    assert said(addon).text.startswith("4 hidden lines on 1 drawing")
+    assert len(set(before[2]) - set(ls.strokes(addon, traced, "Lines", 2))) == 2
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+    # All that is left gets thicker, and one line is deleted.
+    handle = handle_of(addon, traced, "Lines", 2)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    deleted = number_of(addon, traced, 3)
+    numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1).tolist()
+    left = len(set(numbers) - {deleted})
+    gp.remove_strokes(handle, [i for i, number in enumerate(numbers) if number == deleted])
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text.endswith("and 1 deleted strokes, on 5 other frames")
+    for frame in (1, 3, 4, 5, 6):
+        now, radii = ls.strokes(addon, traced, "Lines", frame), radii_of(addon, traced, frame)
+        assert list(now) == [number for number in before[frame] if number != deleted]
+        assert all(np.allclose(now[number], before[frame][number], atol=1e-2) for number in now)
+        assert sum(np.allclose(each, 0.3) for each in radii.values()) == left
+
+
+def test_moved_points_of_what_is_left_of_a_stroke_are_named(addon, traced):
+    gp = addon("blender.grease_pencil")
+    cover(addon, traced, 2)
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines()
+    handle = handle_of(addon, traced, "Lines", 2)
+    starts = gp.offsets(handle)
+    piece = int(np.flatnonzero(gp.value(handle, gp.INTERVAL, len(starts) - 1).any(1))[0])
+    points = gp.positions(handle, int(starts[-1]))
+    points[starts[piece] : starts[piece + 1]] += 0.2
+    gp.put(handle, "position", points)
+    before = ls.strokes(addon, traced, "Lines", 4)
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert any("1 stroke is what Remove Hidden Lines left" in each.text for each in addon("common.reports").take())
+    now = ls.strokes(addon, traced, "Lines", 4)
+    assert list(now) == list(before) and all(np.array_equal(now[number], before[number]) for number in now)
+
+
+def test_a_cut_fill_gives_its_width_and_stays_filled(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    body = number_of(addon, traced, 0)
+    if not gp.FILL_BY_ID:
+        pytest.skip("fills are in materials")
+    for frame in range(1, 7):
+        handle = handle_of(addon, traced, "Lines", frame)
+        content = strokes.read(handle)
+        tracks = content.strokes(gp.TRACK)
+        content.set_strokes("fill_id", np.where(tracks == body, 1, 0).astype(np.int32))
+        strokes.write(handle, content)
+    cover(addon, traced, 2)
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines()
+    handle = handle_of(addon, traced, "Lines", 2)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    bpy.ops.rototoon.spread_edits()
+    content = strokes.read(handle_of(addon, traced, "Lines", 4))
+    i = content.strokes(gp.TRACK).tolist().index(body)
+    span = slice(content.starts[i], content.starts[i + 1])
+    assert content.strokes("fill_id")[i] == 1 and (content.point["opacity"][span] == 1).all() and np.allclose(content.point["radius"][span], 0.3)

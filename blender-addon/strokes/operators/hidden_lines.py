@@ -3,13 +3,14 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, seen
+from ...blender import guard, marks, seen
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined, listed
+from ...lines import rototoon_changes as traced_changes
 from ...tween import rototoon_changes
 from .. import hidden, weights
 
@@ -107,8 +108,10 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         self._need_open()
         hidden.need_unchanged(self._ob, self._cuts, self._seen)
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
-        with rototoon_changes.kept(self._ob) as made:
+        gone = hidden.gone(self._cuts, self.frames == "CURRENT")
+        with traced_changes.removed(self._ob, gone), rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+        marks.remember(self._ob.data)
         self._ob.data.update_tag()
         if not drawings:
             return "Nothing is hidden"
