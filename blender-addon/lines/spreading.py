@@ -29,6 +29,8 @@ SIGMA = 0.2
 """Width of the Gaussian in shares of the length."""
 SAMPLES = 33
 """Samples of a stroke for the similarity."""
+WHOLE = 1e-3
+"""A stretch that lacks less than this share of the length is whole."""
 
 
 _FORM = {
@@ -158,18 +160,17 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
         gone[[place for place, _ in made]] = True
         pixels = to_complex(mapping, content.point["position"])
         touched = set().union(*(edit.numbers(i) for i in edit.reshaped()))
-        there = {number: _stroke(content, pixels, number) for number in touched}
+        there = {number: _pieces(content, pixels, number) for number in touched}
         before = to_complex(edit.mapping, edit.content.point[gp.TRACKED])
         now = to_complex(edit.mapping, edit.content.point["position"])
         for i in edit.reshaped():
             new = _made(edit, i, numbers[i], content, there, before, now, mapping, looks)
             if new is None:
                 left_out += 1
-            elif new[1] is not None:
-                made.append(new)
-        # Curves with handles or knots stay.
-        stay = [number for number, each in there.items() if each is None]
-        gone |= np.isin(tracks, sorted(touched)) & ~np.isin(tracks, stay)
+            else:
+                made += new
+        # Curves with handles or knots, and single points, stay.
+        gone[[piece.index for pieces in there.values() for piece in pieces]] = True
     return _assembled(content, gone, made, edit.slots), left_out
 
 
@@ -182,28 +183,40 @@ def to_complex(mapping, points: np.ndarray) -> np.ndarray:
 
 
 @dataclass
-class _There:
-    """A stroke on another frame."""
+class _Piece:
+    """A stroke on another frame, or what there is of it in one piece there."""
 
     index: int
+    points: np.ndarray
+    """Indices of its points among those of the drawing, by share."""
     shares: np.ndarray
     pixels: np.ndarray
     """Complex pixels."""
     closed: bool
 
 
-def _stroke(content: st.Content, pixels: np.ndarray, number: int) -> _There | None:
-    tracks = content.strokes(gp.TRACK)
-    places = np.flatnonzero((tracks == number) & (content.sizes > 1) & (content.types == st.POLY))
-    if not len(places):
-        return None
-    index = int(places[0])
-    a, b = content.starts[index : index + 2]
-    along = content.point.get(gp.ALONG)
-    share = dr.shares(content.point["position"][a:b]) if along is None else np.asarray(along[a:b], np.float64)
-    if (np.diff(share) < 0).any():
-        share = dr.shares(content.point["position"][a:b])
-    return _There(index, share, pixels[a:b], bool(content.strokes("cyclic")[index]))
+def _pieces(content: st.Content, pixels: np.ndarray, number: int) -> list[_Piece]:
+    """All that can be reshaped of a stroke on another frame, by share: the artist may have cut it there only."""
+    places = np.flatnonzero((content.strokes(gp.TRACK) == number) & (content.sizes > 1) & (content.types == st.POLY))
+    found = []
+    for index in places.tolist():
+        points, along = np.arange(*content.starts[index : index + 2]), content.point.get(gp.ALONG)
+        for part, shares in _stretches(content.point["position"][points], None if along is None else along[points].astype(np.float64)):
+            found.append(_Piece(index, points[part], shares, pixels[points[part]], bool(content.strokes("cyclic")[index])))
+    return sorted(found, key=lambda piece: piece.shares[0])
+
+
+def _stretches(points: np.ndarray, along: np.ndarray | None) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The stretches of a piece along which the share grows, as indices and shares: two if it runs over the seam of a closed stroke."""
+    every = np.arange(len(points))
+    jumps = [] if along is None else np.flatnonzero(np.abs(np.diff(along)) > 0.5) + 1
+    if along is not None and len(jumps) < 2:
+        # Few points may be far from each other without a seam.
+        for parts in ([every], np.split(every, jumps)):
+            turned = [part if along[part[-1]] >= along[part[0]] else part[::-1] for part in parts]
+            if all((np.diff(along[part]) >= 0).all() for part in turned):
+                return [(part, along[part]) for part in turned]
+    return [(every, dr.shares(points))]
 
 
 def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
@@ -246,23 +259,25 @@ def similarity(was: np.ndarray, here: np.ndarray, samples: np.ndarray, where: np
     return np.where(size > 1e-9, (weights * q * p.conj()).sum(1) / np.maximum(size, 1e-9), 1.0)
 
 
-def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple[int, st.Content | None] | None:
-    """The edited stroke `i` on another frame, with the index that it takes; no content if none of its strokes is there; `None` if it
-    cannot be reshaped."""
-    parts = [run for run in runs(edit, i, before, now) if there.get(run.number) is not None]
+def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[tuple[int, st.Content]] | None:
+    """What the edited stroke `i` is on another frame, with the indices that it takes: nothing if none of its strokes is there, several
+    strokes if it is cut there. `None` if it cannot be reshaped."""
+    parts = [run for run in runs(edit, i, before, now) if there.get(run.number)]
     if not parts:
-        return None if np.isin(content.strokes(gp.TRACK), sorted(edit.numbers(i))).any() else (0, None)
-    base = there[parts[0].number]
-    line, where = _reshaped(edit, parts, there, before)
-    if len(line) < 2:
-        return 0, None
-    points = mapping.to_layer(np.stack([line.real, line.imag], 1)).astype(np.float32)
-    made = _like(content, base, where, points)
-    made.set_strokes("cyclic", edit.content.strokes("cyclic")[i : i + 1])
-    made.set_strokes(gp.TRACK, np.array([number], np.int32))
-    if looks:
-        _look_like(made, edit.content, _sources(edit.content, [i])[0])
-    return base.index, made
+        return None if np.isin(content.strokes(gp.TRACK), sorted(edit.numbers(i))).any() else []
+    closed, found = bool(edit.content.strokes("cyclic")[i]), []
+    lines = _reshaped(edit, parts, there, before, closed)
+    for line in lines:
+        if len(line.points) < 2:
+            continue
+        points = mapping.to_layer(np.stack([line.points.real, line.points.imag], 1)).astype(np.float32)
+        made = _like(content, line.piece, line.where, points)
+        made.set_strokes("cyclic", np.array([closed and len(lines) == 1 and line.begins and line.ends]))
+        made.set_strokes(gp.TRACK, np.array([number], np.int32))
+        if looks:
+            _look_like(made, edit.content, _sources(edit.content, [i])[0])
+        found.append((line.piece.index, made))
+    return found
 
 
 def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
@@ -274,28 +289,66 @@ def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple
     return sorted(made.items(), key=lambda each: each[0])
 
 
-def _reshaped(edit: Edit, parts: list[Run], there: dict, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The line (complex pixels) of all runs on another frame, and the share of each point on its stroke there."""
-    samples = np.linspace(0, 1, SAMPLES)
-    lines, wheres = [], []
+@dataclass
+class _Line:
+    """A stretch of an edited stroke on another frame."""
+
+    points: np.ndarray
+    """Complex pixels."""
+    where: np.ndarray
+    """The share of each point on its stroke there."""
+    piece: _Piece
+    """What gives the attributes."""
+    begins: bool
+    """Whether it begins where the run begins, and is not cut there on this frame."""
+    ends: bool
+
+    def with_next(self, other: _Line) -> _Line:
+        """Both in one."""
+        points, where = np.concatenate([self.points, other.points]), np.concatenate([self.where, other.where])
+        return _Line(points, where, self.piece, self.begins, other.ends)
+
+
+def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], before: np.ndarray, closed: bool) -> list[_Line]:
+    """The lines of all runs on another frame: one, unless a stroke is cut there."""
+    lines: list[_Line] = []
     for run in parts:
-        here = there[run.number]
-        order = np.argsort(run.shares, kind="stable")
-        shares, moved = run.shares[order], run.moved[order]
-        inside = (here.shares > shares[0]) & (here.shares < shares[-1])
-        where = np.concatenate([[shares[0]], here.shares[inside], [shares[-1]]]) if len(shares) > 1 else shares[:1]
-        if (run.shares == run.shares[0]).all() and len(run.shares) > 1:
-            # Points that were drawn since, all at one place of the stroke.
-            where, delta = run.shares, run.moved
-        else:
-            delta = _interpolated(where, shares, moved)
+        samples = np.linspace(0, 1, SAMPLES)
         was = _original(edit, run.number, samples, before)
-        factor = similarity(was, _interpolated(samples, here.shares, here.pixels), samples, where, here.closed)
-        line = _interpolated(where, here.shares, here.pixels) + factor * delta
-        backwards = run.shares[-1] < run.shares[0]
-        lines.append(line[::-1] if backwards else line)
-        wheres.append(where[::-1] if backwards else where)
-    return np.concatenate(lines), np.concatenate(wheres)
+        stretches = [_stretch(run, piece, was, samples) for piece in there[run.number]]
+        stretches = [each for each in stretches if each is not None]
+        if run.shares[-1] < run.shares[0]:
+            stretches = [_Line(each.points[::-1], each.where[::-1], each.piece, each.ends, each.begins) for each in reversed(stretches)]
+        for k, each in enumerate(stretches):
+            if lines and k == 0 and lines[-1].ends and each.begins:
+                lines[-1] = lines[-1].with_next(each)
+            else:
+                lines.append(each)
+    if closed and len(lines) > 1 and lines[-1].ends and lines[0].begins and lines[-1].piece.index == lines[0].piece.index:
+        # What lies on both sides of the seam of a closed stroke.
+        lines[0] = lines.pop().with_next(lines[0])
+        lines[0].begins = lines[0].ends = False
+    return lines
+
+
+def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _Line | None:
+    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the `samples`."""
+    order = np.argsort(run.shares, kind="stable")
+    shares, moved, here = run.shares[order], run.moved[order], piece.shares
+    first, last = max(shares[0], here[0]), min(shares[-1], here[-1])
+    if first > last or (first == last and shares[0] < shares[-1]):
+        return None
+    if shares[0] == shares[-1]:
+        # Points that were drawn since, all at one place of the stroke.
+        where, delta = run.shares, run.moved
+    else:
+        where = np.concatenate([[first], here[(here > first) & (here < last)], [last]])
+        delta = _interpolated(where, shares, moved)
+    known = (samples >= here[0]) & (samples <= here[-1])
+    known = known if known.sum() > 1 else np.ones(len(samples), bool)
+    factor = similarity(was[known], _interpolated(samples[known], here, piece.pixels), samples[known], where, piece.closed)
+    points = _interpolated(where, here, piece.pixels) + factor * delta
+    return _Line(points, where, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
 
 
 def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
@@ -310,14 +363,13 @@ def _interpolated(where: np.ndarray, known: np.ndarray, values: np.ndarray) -> n
     return np.interp(where, known, values.real) + 1j * np.interp(where, known, values.imag)
 
 
-def _like(content: st.Content, base: _There, where: np.ndarray, points: np.ndarray) -> st.Content:
-    """A stroke with the attributes of stroke `base`, at shares of its length."""
-    a, b = content.starts[base.index : base.index + 2]
+def _like(content: st.Content, base: _Piece, where: np.ndarray, points: np.ndarray) -> st.Content:
+    """A stroke with the attributes of the piece `base`, at shares of the stroke's length."""
     made = st.Content(np.array([len(points)], np.int32), content.types[base.index : base.index + 1].copy())
     made.kinds = dict(content.kinds)
-    near = np.clip(np.searchsorted(base.shares, where), 0, b - a - 1)
+    near = np.clip(np.searchsorted(base.shares, where), 0, len(base.points) - 1)
     for name, values in content.point.items():
-        own = values[a:b]
+        own = values[base.points]
         if values.dtype.kind == "f":
             columns = own.reshape(len(own), -1)
             blended = np.stack([np.interp(where, base.shares, columns[:, k]) for k in range(columns.shape[1])], 1)

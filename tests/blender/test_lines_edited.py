@@ -324,3 +324,60 @@ def test_a_cut_fill_gives_its_width_and_stays_filled(addon, traced):
     i = content.strokes(gp.TRACK).tolist().index(body)
     span = slice(content.starts[i], content.starts[i + 1])
     assert content.strokes("fill_id")[i] == 1 and (content.point["opacity"][span] == 1).all() and np.allclose(content.point["radius"][span], 0.3)
+
+
+def cut_elsewhere(addon, ob, frame, number, spans):
+    """Leaves spans of a stroke, by shares of its points, as the artist's cutter does: each a stroke with the same number."""
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    handle = handle_of(addon, ob, "Lines", frame)
+    content = strokes.read(handle)
+    i = content.strokes(gp.TRACK).tolist().index(number)
+    one, found = strokes.chosen(content, [i]), strokes.chosen(content, [k for k in range(len(content.sizes)) if k != i])
+    count = int(content.sizes[i])
+    for first, last in spans:
+        rows = np.arange(round(first * count), round(last * count)) % count
+        piece = strokes.Content(np.array([len(rows)], np.int32), one.types, {k: v[rows] for k, v in one.point.items()}, dict(one.curve), one.kinds)
+        piece.set_strokes("cyclic", np.array([False]))
+        found = strokes.joined(found, piece)
+    strokes.write(handle, found)
+    return found
+
+
+@pytest.mark.parametrize("spans", [[(0, 0.45), (0.55, 1)], [(0.1, 0.4), (0.6, 1.05)], [(0.3, 0.9)]])
+def test_pieces_of_another_frame_are_all_reshaped_and_stay_pieces(addon, traced, spans):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    body = number_of(addon, traced, 0)
+
+    def raised(ob):
+        edit(addon, ob, 1, body, lambda points: points + np.float32([0, 0, 0.2]))
+        bpy.ops.rototoon.spread_edits()
+        assert said(addon).text == "1 edited stroke, on 5 other frames"
+        return strokes.read(handle_of(addon, ob, "Lines", 4))
+
+    def pieces(content):
+        return [content.point["position"][a:b] for a, b, number in zip(content.starts, content.starts[1:], content.strokes(gp.TRACK)) if number == body]
+
+    (whole,) = pieces(raised(traced))
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    ob = bpy.context.object
+    before = pieces(cut_elsewhere(addon, ob, 4, body, spans))
+    content = raised(ob)
+    now = pieces(content)
+    assert len(now) == len(before) == len(spans) and not content.strokes("cyclic")[content.strokes(gp.TRACK) == body].any()
+    for was, here in zip(before, now):
+        assert len(here) == pytest.approx(len(was), abs=2) and away(here, whole) < 0.05
+        moved = [np.linalg.norm(here[end] - was[end]) for end in (0, -1)]
+        assert moved == pytest.approx([0.2, 0.2], abs=0.04)
+    closed = strokes.read(handle_of(addon, ob, "Lines", 5))
+    assert closed.strokes("cyclic")[closed.strokes(gp.TRACK) == body].tolist() == [True]
+
+
+def test_a_single_point_of_another_frame_stays(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    arm = number_of(addon, traced, 4)
+    count = len(ls.strokes(addon, traced, "Lines", 4)[arm])
+    cut_elsewhere(addon, traced, 4, arm, [(0, 0.8), (0.9, 0.9 + 1.01 / count)])
+    edit(addon, traced, 1, arm, lambda points: points + np.float32([0, 0, 0.1]))
+    bpy.ops.rototoon.spread_edits()
+    now = strokes.read(handle_of(addon, traced, "Lines", 4))
+    assert sorted(now.sizes[now.strokes(gp.TRACK) == arm] > 1) == [False, True]
