@@ -69,6 +69,13 @@ def frames_between(ob, first: int, last: int) -> list[int]:
     return sorted({first, *(number for number in numbers if first < number <= last)})
 
 
+def next_change(ob, last: int) -> int | None:
+    """The first frame after a range on which something can change; `None` if nothing does."""
+    if placement.moves(ob, gp.every_layer(ob)):
+        return last + 1
+    return min((number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer) if number > last), default=None)
+
+
 def cut_frame(ob, frame: int, choices: Choices, seen: Seen) -> Iterator[Cut]:
     """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`."""
     scene = _Scene(ob, frame, choices)
@@ -326,11 +333,11 @@ def need_unchanged(ob, cuts: list[Cut], seen: Seen) -> None:
             raise changed(each.layer, each.frame)
 
 
-def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
+def write(ob, cuts: list[Cut], move: bool, in_place: bool, after: int | None = None) -> tuple[int, int]:
     """Writes cut drawings. Returns the number of changed drawings and of hidden parts.
 
     With `move`, hidden parts move to layers of their own. With `in_place`, the visible drawings are cut. Otherwise a drawing that
-    shows on several frames gets a new frame where its hidden lines change.
+    shows on several frames gets a new frame where its hidden lines change. From frame `after` on nobody has looked: what shows there stays as it was.
     """
     changed = parts = 0
     by_layer: dict[str, list[Cut]] = {}
@@ -340,31 +347,51 @@ def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
         if not any(each.changed for each in group):
             continue
         layer = gp.find_layer(ob, name)
-        aside = hierarchy.beside(ob, layer, name + SUFFIX) if move else None
+        aside = _Aside(hierarchy.beside(ob, layer, name + SUFFIX)) if move else None
+        group = sorted(group, key=lambda cut: cut.frame)
+        kept = after is not None and group[-1].changed and _kept(layer, group[-1].source, after)
         before: Cut | None = None
-        for each in sorted(group, key=lambda cut: cut.frame):
+        for each in group:
             again = before is not None and before.source == each.source
             same = before.seen.equals(each.seen) if again else not each.changed
             number = each.source if in_place else each.frame
             if aside is not None and not (same and again):
-                _put_aside(aside, number, each.hidden)
+                aside.put(number, each.source, each.hidden)
             before = each
             if same:
                 continue
             _put(layer, number, each.source, each.seen)
             changed += 1
             parts += each.pieces
+        if aside is not None and kept:
+            aside.put(after, group[-1].source, st.chosen(group[-1].hidden, []))
     return changed, parts
 
 
-def _put_aside(layer, number: int, hidden: st.Content) -> None:
-    """Adds hidden lines to a frame. The hidden lines of an earlier frame do not show on it."""
-    known = gp.drawings(layer).get(number)
-    if known is not None:
-        hidden = st.joined(st.read(known[0]), hidden)
-    elif not len(hidden.sizes) and st.shown_frame(layer, number) is None:
-        return
-    _put(layer, number, None, hidden)
+def _kept(layer, source: int, after: int) -> bool:
+    """Keeps a drawing that will be cut as it is from frame `after` on, if it shows there. Returns whether it does."""
+    if st.shown_frame(layer, after) != source:
+        return False
+    _put(layer, after, source, st.read(gp.drawings(layer)[source][0]))
+    return True
+
+
+class _Aside:
+    """A layer with hidden lines."""
+
+    def __init__(self, layer):
+        self._layer = layer
+        self._before = {number: st.read(handle) for number, (handle, _) in gp.drawings(layer).items()}
+
+    def put(self, number: int, source: int, hidden: st.Content) -> None:
+        """Adds hidden lines of the drawing of frame `source` to a frame. What an earlier run has hidden of it still counts there; the hidden lines of
+        an earlier frame of this run do not."""
+        shown = max((frame for frame in self._before if source <= frame <= number), default=None)
+        if shown is not None:
+            hidden = st.joined(self._before[shown], hidden)
+        elif not len(hidden.sizes) and st.shown_frame(self._layer, number) is None:
+            return
+        _put(self._layer, number, None, hidden)
 
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:

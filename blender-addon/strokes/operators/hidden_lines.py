@@ -76,9 +76,10 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def begin(self, context):
         self._ob, scene = context.object, context.scene
-        self._frames = [scene.frame_current]
+        self._frames, self._after = [scene.frame_current], None
         if self.frames == "RANGE":
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
+            self._after = hidden.next_change(self._ob, scene.frame_end)
         if not any(not guard.is_hidden(layer) and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
             raise Problem("No drawings are visible: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
@@ -110,7 +111,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
         gone = hidden.gone(self._cuts, self.frames == "CURRENT")
         with traced_changes.removed(self._ob, gone), rototoon_changes.kept(self._ob) as made:
-            drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+            drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT", self._after)
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
         if not drawings:

@@ -1,0 +1,78 @@
+"""Remove Hidden Lines: over time, with fills that nobody sees, and of outlines without a line. With the real library."""
+
+import bpy
+import numpy as np
+import pytest
+from test_strokes import add, circle, content, drawing, drawing_object, fills
+
+pytestmark = [pytest.mark.every_version, pytest.mark.usefixtures("library")]
+
+
+def level(first=-3.0, last=3.0):
+    x = np.linspace(first, last, 61)
+    return np.stack([x, 0 * x], 1)
+
+
+def cover(addon, ob, layer, frame, centre, radius=1.0):
+    drawn = add(addon, ob, layer, frame, [circle(centre, radius, 400)], cyclic=True)
+    fills(addon, ob, layer, frame, [1])
+    return drawn
+
+
+def behind(addon, layers=("Lines", "Front"), last=10):
+    """A line from -3 to 3, held from frame 1 on, and empty layers in front of it."""
+    ob = drawing_object(addon, layers)
+    add(addon, ob, "Lines", 1, [level()])
+    bpy.context.scene.frame_start, bpy.context.scene.frame_end = 1, last
+    return ob
+
+
+def ends(addon, ob, layer="Lines"):
+    """By frame the first and the last x of each stroke."""
+    found = {}
+    for frame in sorted(addon("blender.grease_pencil").drawings(ob.data.layers[layer])):
+        own = content(addon, ob, layer, frame)
+        x = own.point["position"][:, 0]
+        found[frame] = [(round(float(x[a]), 1), round(float(x[b - 1]), 1)) for a, b in zip(own.starts, own.starts[1:])]
+    return found
+
+
+def messages(addon):
+    return " / ".join(each.text for each in addon("common.reports").take())
+
+
+def test_what_an_earlier_run_moved_aside_shows_on_new_frames_too(addon):
+    ob = behind(addon, ("Lines", "Front", "Front 2"))
+    cover(addon, ob, "Front", 1, (0, 0))
+    bpy.ops.rototoon.hidden_lines(action="MOVE", frames="RANGE")
+    cover(addon, ob, "Front 2", 5, (2.5, 0), 0.2)
+    bpy.ops.rototoon.hidden_lines(action="MOVE", frames="RANGE")
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)], 5: [(-3, -1), (1, 2.3), (2.7, 3)]}
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], 5: [(-1, 1), (2.3, 2.7)]}
+    # A drawing that comes between is another one: nothing of the earlier one is hidden there.
+    add(addon, ob, "Lines", 3, [level(-2, 0)])
+    bpy.ops.rototoon.hidden_lines(action="MOVE", frames="RANGE")
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], 3: [(-1, 0)], 5: [(-1, 1), (2.3, 2.7)]}
+
+
+@pytest.mark.parametrize("action", ["REMOVE", "MOVE"])
+def test_frames_after_the_range_show_what_they_showed(addon, action):
+    ob = behind(addon)
+    gp = addon("blender.grease_pencil")
+    cover(addon, ob, "Front", 1, (0, 0))
+    cover(addon, ob, "Front", 20, (0, 50))
+    bpy.ops.rototoon.hidden_lines(frames="RANGE", action=action)
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)], 20: [(-3, 3)]}
+    assert gp.drawings(ob.data.layers["Lines"])[20][1] == gp.GENERATED
+    if action == "MOVE":
+        assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], 20: []}
+    # Where the line is cut already, there is nothing to keep.
+    bpy.ops.rototoon.hidden_lines(frames="RANGE", action=action)
+    assert list(ends(addon, ob)) == [1, 20]
+
+
+def test_nothing_is_added_after_the_range_where_nothing_changes_there(addon):
+    ob = behind(addon)
+    cover(addon, ob, "Front", 1, (0, 0))
+    bpy.ops.rototoon.hidden_lines(frames="RANGE")
+    assert list(ends(addon, ob)) == [1]
