@@ -17,7 +17,7 @@ import numpy as np
 from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy, marks, placement
+from ..blender import covering, guard, hierarchy, marks, placement
 from ..blender import strokes as st
 from ..blender.projection import Projection
 from ..blender.seen import Seen, changed
@@ -76,9 +76,11 @@ def next_change(ob, last: int) -> int | None:
     return min((number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer) if number > last), default=None)
 
 
-def cut_frame(ob, frame: int, choices: Choices, seen: Seen) -> Iterator[Cut]:
-    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`."""
+def cut_frame(ob, frame: int, choices: Choices, seen: Seen, clear: set[str]) -> Iterator[Cut]:
+    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`, and in `clear` the layers with fills through
+    which one sees."""
     scene = _Scene(ob, frame, choices)
+    clear |= scene.clear
     found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
     may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
@@ -107,6 +109,8 @@ class _Scene:
 
     def __init__(self, ob, frame: int, choices: Choices):
         view = Projection(ob)
+        self.clear: set[str] = set()
+        """Layers with fills that are seen, and that hide nothing."""
         self.entries: list[_Entry] = []
         columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
         strokes = points = 0
@@ -117,10 +121,7 @@ class _Scene:
             content = st.read(gp.drawings(layer)[number][0])
             fine = content.finite() & (_forms(content) >= 0)
             every, lines = st.filled(ob, content), np.arange(len(content.sizes))
-            covers = every
-            if choices.closed:
-                above = max(every.max(initial=0), 0) + 1
-                covers = np.where((every == 0) & content.strokes("cyclic"), above + lines, every)
+            covers = self._covers(ob, layer, content, every, choices)
             self.entries.append(_Entry(layer, number, content, strokes, points, every, fine))
             columns["sizes"].append(content.sizes)
             columns["points"].append(_pixels(view, layer, content, fine))
@@ -138,6 +139,19 @@ class _Scene:
         self.forms = joined["forms"].astype(np.uint8)
         self.depths = np.ascontiguousarray(joined["depths"], np.int32)
         self.fills = joined["fills"].astype(np.int32)
+
+    def _covers(self, ob, layer, content: st.Content, fills: np.ndarray, choices: Choices) -> np.ndarray:
+        """For each stroke the number of what it covers with; 0 if it covers nothing."""
+        opacity, mixes = covering.of_fills(ob, layer, content), covering.mixes(layer)
+        hides = (opacity >= covering.OPAQUE) & (not mixes)
+        if ((opacity > 0) & ~hides & (fills != 0)).any():
+            self.clear.add(layer.name)
+        covers = np.where(hides, fills, 0)
+        if choices.closed and not covering.is_masked(layer):
+            above = max(fills.max(initial=0), 0) + 1
+            closed = content.strokes("cyclic") & covering.of_lines(ob, layer, content)
+            covers = np.where((covers == 0) & closed, above + np.arange(len(fills)), covers)
+        return covers
 
     def strokes(self) -> Strokes:
         """The strokes of all layers."""

@@ -76,3 +76,66 @@ def test_nothing_is_added_after_the_range_where_nothing_changes_there(addon):
     cover(addon, ob, "Front", 1, (0, 0))
     bpy.ops.rototoon.hidden_lines(frames="RANGE")
     assert list(ends(addon, ob)) == [1]
+
+
+def _clear_fill(alpha):
+    def change(ob, layer, handle, gp):
+        material = ob.data.materials[int(gp.value(handle, "material_index", 1)[0])]
+        material.grease_pencil.fill_color[3] = alpha
+
+    return change
+
+
+def _fill_opacity(ob, layer, handle, gp):
+    gp.put(handle, "fill_opacity", np.array([0.0]))
+
+
+def _layer_opacity(value):
+    def change(ob, layer, handle, gp):
+        layer.opacity = value
+
+    return change
+
+
+def _hidden_material(ob, layer, handle, gp):
+    ob.data.materials[int(gp.value(handle, "material_index", 1)[0])].grease_pencil.hide = True
+
+
+def _masked(ob, layer, handle, gp):
+    layer.use_masks = True
+    layer.mask_layers.add(ob.data.layers.new("Mask"))
+
+
+def _blended(ob, layer, handle, gp):
+    layer.blend_mode = "MULTIPLY"
+
+
+@pytest.mark.parametrize(
+    "change, named",
+    [
+        (_clear_fill(0.0), False), (_clear_fill(0.2), True), (_fill_opacity, False), (_layer_opacity(0.0), False),
+        (_layer_opacity(0.3), True), (_hidden_material, False), (_masked, True), (_blended, True),
+    ],
+)  # fmt: skip
+def test_lines_behind_a_fill_that_does_not_hide_them_stay(addon, change, named):
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    if gp.FILL_BY_ID:
+        # Lines and fills have materials of their own.
+        ob.data.materials.append(ob.data.materials[0].copy())
+    handle = cover(addon, ob, "Front", 1, (0, 0))
+    if gp.FILL_BY_ID:
+        gp.put(handle, "material_index", np.array([1]))
+    change(ob, ob.data.layers["Front"], handle, gp)
+    messages(addon)
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, 3)]}
+    assert ('"Front": the fills are transparent, masked or blended' in messages(addon)) == named
+
+
+def test_a_mask_that_is_switched_off_changes_nothing(addon):
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    layer = ob.data.layers["Front"]
+    _masked(ob, layer, cover(addon, ob, "Front", 1, (0, 0)), gp)
+    layer.use_masks = False
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)]}

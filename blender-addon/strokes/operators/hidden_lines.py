@@ -86,7 +86,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._need_open()
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
-        self._cuts, self._seen = [], seen.Seen(self._ob)
+        self._cuts, self._seen, self._clear = [], seen.Seen(self._ob), set()
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 
     def _need_open(self) -> None:
@@ -101,7 +101,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
-                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen))
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen, self._clear))
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
@@ -114,10 +114,18 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT", self._after)
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
+        self.warn(self._through())
         if not drawings:
             return "Nothing is hidden"
         self.warn(weights.warning(self._ob))
         return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
+
+    def _through(self) -> str:
+        """Which layers have fills that hide nothing; empty if none has."""
+        if not self._clear or self.covers == "CLOSED":
+            return ""
+        names = ", ".join(f'"{name}"' for name in sorted(self._clear))
+        return f"lines behind fills that do not hide them stay, on {names}: the fills are transparent, masked or blended"
 
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
         """Which of the cut drawings are the artist's, and what that means for in-betweens."""
