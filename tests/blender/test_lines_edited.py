@@ -381,3 +381,31 @@ def test_a_single_point_of_another_frame_stays(addon, traced):
     bpy.ops.rototoon.spread_edits()
     now = strokes.read(handle_of(addon, traced, "Lines", 4))
     assert sorted(now.sizes[now.strokes(gp.TRACK) == arm] > 1) == [False, True]
+
+
+def select(addon, ob, layer, which):
+    handle = handle_of(addon, ob, layer, 1)
+    handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", which)
+
+
+@pytest.mark.parametrize("close", ["hide", "lock"])
+def test_a_selection_on_a_layer_that_edit_mode_does_not_reach_is_no_part(addon, film, close):
+    body, eye = ls.lines(0)[0][0], ls.lines(0)[1][0]
+    for name, line in (("A", eye), ("Off", body)):
+        ls.put(addon, film, name, 1, [(line, True)])
+        select(addon, film, name, [True])
+    setattr(film.data.layers["Off"], close, True)
+    bpy.ops.rototoon.make_part(name="eye")
+    (contour,) = ls.strokes(addon, film, "Contours", 1).values()
+    assert np.ptp(contour, axis=0) == pytest.approx(np.ptp(eye, axis=0), abs=1.0)
+    assert said(addon).text.startswith('"eye" is a new part')
+    setattr(film.data.layers["A"], close, True)
+    with pytest.raises(RuntimeError, match="No strokes are selected on layers that are neither hidden nor locked"):
+        bpy.ops.rototoon.make_part()
+
+
+def test_strokes_beside_a_closed_one_are_said_not_to_be_used(addon, film):
+    ls.put(addon, film, "A", 1, [(ls.lines(0)[1][0], True), (ls.lines(0)[4][0], False)])
+    select(addon, film, "A", [True, True])
+    bpy.ops.rototoon.make_part()
+    assert "1 stroke is not used: a closed stroke is a contour by itself" in said(addon).text
