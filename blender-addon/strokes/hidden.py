@@ -10,14 +10,14 @@ Limits: the artist's drawings are cut too, and only undo brings their lines back
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
-from ..blender import covering, guard, hierarchy, marks, placement
+from ..blender import covering, guard, hierarchy, marks, placement, stroke_lines
 from ..blender import strokes as st
 from ..blender.projection import Projection
 from ..blender.seen import Seen, changed
@@ -36,6 +36,20 @@ class Choices:
     """Whether all closed strokes cover, not only filled ones."""
     by_stroke: bool
     """Whether later strokes of a layer cover earlier ones. Otherwise only layers cover layers."""
+
+
+Curve = tuple[str, int, int]
+"""Layer, frame and index of a stroke that is a curve of a kind that the library does not have."""
+
+
+@dataclass
+class Noted:
+    """What is told beside the result."""
+
+    clear: set[str] = field(default_factory=set)
+    """Layers with fills through which one sees."""
+    uncut: set[Curve] = field(default_factory=set)
+    """Curves that are hidden somewhere, and cannot be cut."""
 
 
 @dataclass
@@ -76,14 +90,15 @@ def next_change(ob, last: int) -> int | None:
     return min((number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer) if number > last), default=None)
 
 
-def cut_frame(ob, frame: int, choices: Choices, seen: Seen, clear: set[str]) -> Iterator[Cut]:
-    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`, and in `clear` the layers with fills through
-    which one sees."""
+def cut_frame(ob, frame: int, choices: Choices, seen: Seen, noted: Noted) -> Iterator[Cut]:
+    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`, and what is to be told in `noted`."""
     scene = _Scene(ob, frame, choices)
-    clear |= scene.clear
+    noted.clear |= scene.clear
     found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
     may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
+    hidden = set(pieces.strokes[pieces.hidden].tolist())
+    noted.uncut |= {curve for index, curve in scene.curves.items() if index in hidden and curve[0] in may_change}
     for entry in scene.entries:
         if entry.layer.name in may_change:
             seen.note(entry.layer.name, entry.source, entry.content)
@@ -101,7 +116,7 @@ class _Entry:
     first_point: int
     fills: np.ndarray
     fine: np.ndarray
-    """Strokes with a known curve type and finite points. Others neither cover nor are cut."""
+    """Strokes with a known curve type and finite points. Others are not cut. Curves of other types cover with their lines."""
 
 
 class _Scene:
@@ -112,33 +127,42 @@ class _Scene:
         self.clear: set[str] = set()
         """Layers with fills that are seen, and that hide nothing."""
         self.entries: list[_Entry] = []
-        columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
-        strokes = points = 0
+        self.curves: dict[int, Curve] = {}
+        """By index the lines of curves that cannot be cut."""
+        self._columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
+        self._strokes = self._count = 0
         for depth, layer in enumerate(gp.every_layer(ob)):
             number = st.shown_frame(layer, frame)
             if guard.is_hidden(layer) or is_output(layer) or number is None:
                 continue
             content = st.read(gp.drawings(layer)[number][0])
-            fine = content.finite() & (_forms(content) >= 0)
+            forms, finite = _forms(content), content.finite()
+            fine = finite & (forms >= 0)
             every, lines = st.filled(ob, content), np.arange(len(content.sizes))
             covers = self._covers(ob, layer, content, every, choices)
-            self.entries.append(_Entry(layer, number, content, strokes, points, every, fine))
-            columns["sizes"].append(content.sizes)
-            columns["points"].append(_pixels(view, layer, content, fine))
-            columns["closed"].append(content.strokes("cyclic"))
-            columns["forms"].append(np.maximum(_forms(content), 0))
-            order = lines if choices.by_stroke else np.zeros_like(lines)
-            columns["depths"].append(np.stack([np.full_like(lines, depth), order], 1))
-            columns["fills"].append(np.where(fine, covers, 0))
-            strokes += len(content.sizes)
-            points += len(content.point["position"])
-        joined = {name: np.concatenate(each) if each else np.zeros(0) for name, each in columns.items()}
+            self.entries.append(_Entry(layer, number, content, self._strokes, self._count, every, fine))
+            depths = np.stack([np.full_like(lines, depth), lines if choices.by_stroke else np.zeros_like(lines)], 1)
+            closed = content.strokes("cyclic")
+            self._put(content.sizes, _pixels(view, layer, content, fine), closed, np.maximum(forms, 0), depths, np.where(fine, covers, 0))
+            lineless = st.lineless(ob, content)
+            for i, line in _curves(content, finite & ~fine):
+                if not lineless[i]:
+                    self.curves[self._strokes] = layer.name, number, i
+                self._put([len(line)], view.pixels(layer, line), closed[[i]], [_POLYLINE], depths[[i]], covers[[i]])
+        joined = {name: np.concatenate(each) if each else np.zeros(0) for name, each in self._columns.items()}
         self._points = np.ascontiguousarray(joined["points"], np.float64).reshape(-1, 2)
         self._offsets = np.concatenate([[0], np.cumsum(joined["sizes"])]).astype(np.int32)
         self._closed = joined["closed"].astype(np.uint8)
         self.forms = joined["forms"].astype(np.uint8)
         self.depths = np.ascontiguousarray(joined["depths"], np.int32)
         self.fills = joined["fills"].astype(np.int32)
+
+    def _put(self, *columns) -> None:
+        """Adds strokes, with the columns in their order."""
+        for name, values in zip(self._columns, columns, strict=True):
+            self._columns[name].append(values)
+        self._strokes += len(columns[0])
+        self._count += len(columns[1])
 
     def _covers(self, ob, layer, content: st.Content, fills: np.ndarray, choices: Choices) -> np.ndarray:
         """For each stroke the number of what it covers with; 0 if it covers nothing."""
@@ -167,6 +191,16 @@ def _forms(content: st.Content) -> np.ndarray:
     return np.select([content.types == st.POLY, uniform, chain], [_POLYLINE, _SPLINE, _CHAIN], -1)
 
 
+def _curves(content: st.Content, which: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+    """The lines that Blender draws for the strokes of a mask, with their indices. That of a closed one does not repeat its first point."""
+    lines = stroke_lines.lines(content) if which.any() else []
+    closed = content.strokes("cyclic")
+    for i in np.flatnonzero(which).tolist():
+        line = lines[i][:-1] if closed[i] else lines[i]
+        if len(line) > 1 and np.isfinite(line).all():
+            yield i, line
+
+
 def _pixels(view: Projection, layer, content: st.Content, fine: np.ndarray) -> np.ndarray:
     points = content.point["position"].astype(np.float64)
     which = np.repeat(fine, content.sizes)
@@ -190,8 +224,8 @@ class _Pieces:
 
 def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     content, count = entry.content, len(entry.content.sizes)
-    # Transparent lines stay, since they carry fills.
-    carriers = st.undrawn(content)
+    # Outlines without a line stay, since they carry fills.
+    carriers = st.lineless(ob, content)
     mine = np.flatnonzero((pieces.strokes >= entry.first_stroke) & (pieces.strokes < entry.first_stroke + count))
     stroke = pieces.strokes[mine] - entry.first_stroke
     mine, stroke = (each[entry.fine[stroke] & ~carriers[stroke]] for each in (mine, stroke))

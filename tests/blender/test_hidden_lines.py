@@ -139,3 +139,41 @@ def test_a_mask_that_is_switched_off_changes_nothing(addon):
     layer.use_masks = False
     bpy.ops.rototoon.hidden_lines()
     assert ends(addon, ob) == {1: [(-3, -1), (1, 3)]}
+
+
+def test_outlines_without_a_line_are_no_lines(addon):
+    """Two solid blacks, one over the other."""
+    ob, gp = drawing_object(addon), addon("blender.grease_pencil")
+    handle = add(addon, ob, "Lines", 1, [circle((0, 0), 1, 80), circle((1, 0), 1, 80)], cyclic=True)
+    fills(addon, ob, "Lines", 1, [1, 2])
+    if gp.FILL_BY_ID:
+        gp.put(handle, "hide_stroke", np.ones(2, bool))
+    else:
+        ob.data.materials[1].grease_pencil.show_stroke = False
+    before = content(addon, ob, "Lines", 1)
+    messages(addon)
+    bpy.ops.rototoon.hidden_lines()
+    assert messages(addon) == "Nothing is hidden" and content(addon, ob, "Lines", 1).equals(before)
+
+
+@pytest.mark.parametrize("kind", ["CATMULL_ROM", "BEZIER", "NURBS"])
+def test_curves_of_other_types_cover_and_are_said_not_to_be_cut(addon, kind):
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    # Drawings have points of their own after it, too.
+    front = add(addon, ob, "Front", 1, [circle((0, 0), 1, 24), circle((0, 5), 1, 30)], cyclic=True)
+    fills(addon, ob, "Front", 1, [1, 2])
+    add(addon, ob, "Lines", 1, [level() + [0, 5]])
+    front.set_types(type=kind, indices=[0])
+    if kind == "NURBS":
+        gp.put(front, "nurbs_order", np.array([4, 4], np.int8))
+    messages(addon)
+    bpy.ops.rototoon.hidden_lines()
+    (lines,) = ends(addon, ob).values()
+    assert np.abs(np.array(lines) - [(-3, -1), (1, 3)] * 2).max() < 0.06
+    assert "cannot be cut" not in messages(addon)
+    line = add(addon, ob, "Lines", 1, [level() + [0, 0.2], level() + [0, 3]])
+    line.set_types(type=kind, indices=[4, 5])
+    if kind == "NURBS":
+        gp.put(line, "nurbs_order", np.full(6, 4, np.int8))
+    bpy.ops.rototoon.hidden_lines()
+    assert "not cut: 1 hidden line is a curve" in messages(addon) and len(content(addon, ob, "Lines", 1).sizes) == 6

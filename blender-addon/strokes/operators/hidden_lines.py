@@ -86,7 +86,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._need_open()
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
-        self._cuts, self._seen, self._clear = [], seen.Seen(self._ob), set()
+        self._cuts, self._seen, self._noted = [], seen.Seen(self._ob), hidden.Noted()
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 
     def _need_open(self) -> None:
@@ -101,7 +101,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
-                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen, self._clear))
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen, self._noted))
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
@@ -115,6 +115,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
         self.warn(self._through())
+        self.warn(self._uncut())
         if not drawings:
             return "Nothing is hidden"
         self.warn(weights.warning(self._ob))
@@ -122,10 +123,18 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def _through(self) -> str:
         """Which layers have fills that hide nothing; empty if none has."""
-        if not self._clear or self.covers == "CLOSED":
+        if not self._noted.clear or self.covers == "CLOSED":
             return ""
-        names = ", ".join(f'"{name}"' for name in sorted(self._clear))
+        names = ", ".join(f'"{name}"' for name in sorted(self._noted.clear))
         return f"lines behind fills that do not hide them stay, on {names}: the fills are transparent, masked or blended"
+
+    def _uncut(self) -> str:
+        """How many hidden lines cannot be cut; empty if all can."""
+        count = len(self._noted.uncut)
+        if not count:
+            return ""
+        lines = "1 hidden line is a curve" if count == 1 else f"{count} hidden lines are curves"
+        return f"not cut: {lines} of a kind that cannot be cut; give it the type Poly in Edit Mode (Set Curve Type), then Fit Strokes makes a curve that can"
 
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
         """Which of the cut drawings are the artist's, and what that means for in-betweens."""
