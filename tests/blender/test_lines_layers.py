@@ -1,7 +1,8 @@
-"""Carry Strokes on several layers whose drawings are on different frames. With the real library."""
+"""Carry Strokes on several layers whose drawings are on different frames, and Trace Image. With the real library."""
 
 import bpy
 import line_shots as ls
+import numpy as np
 import pytest
 from line_stage import film, pictures, traced  # noqa: F401 - fixtures
 from line_stage import away, number_of
@@ -48,3 +49,43 @@ def test_what_was_moved_to_another_layer_is_not_drawn_anew_on_its_first_one(addo
     bpy.ops.rototoon.carry_strokes(layers="ALL")
     assert counts(addon, traced, "Red") == dict.fromkeys(range(1, 7), 1)
     assert counts(addon, traced, "Lines") == dict.fromkeys(range(1, 7), 5)
+
+
+def drawn_image(line):
+    """The pixels of a white picture, 160 by 120, with a level or an upright line."""
+    pixels = np.ones((120, 160, 4), np.float32)
+    if line == "level":
+        pixels[58:61, 20:140, :3] = 0
+    else:
+        pixels[20:100, 78:81, :3] = 0
+    return pixels.ravel()
+
+
+@pytest.mark.every_version
+@pytest.mark.parametrize("kind", ["file", "packed", "generated", "float"])
+def test_what_was_drawn_on_an_image_is_traced_though_it_is_not_saved(addon, library, tmp_path, kind):
+    image = bpy.data.images.new("picture", 160, 120, float_buffer=kind == "float")
+    if kind in ("file", "packed"):
+        image.pixels.foreach_set(drawn_image("level"))
+        image.filepath_raw, image.file_format = str(tmp_path / "picture.png"), "PNG"
+        image.save()
+        bpy.data.images.remove(image)
+        image = bpy.data.images.load(str(tmp_path / "picture.png"))
+        if kind == "packed":
+            image.pack()
+    image.pixels.foreach_set(drawn_image("upright"))
+    image.update()
+    empty = bpy.data.objects.new("reference", None)
+    empty.empty_display_type, empty.data = "IMAGE", image
+    empty.rotation_euler = (np.pi / 2, 0, 0)
+    bpy.context.collection.objects.link(empty)
+    ob = addon("blender.grease_pencil").new_object("Drawing", bpy.context.collection)
+    for each in (empty, ob):
+        each.select_set(True)
+    bpy.context.view_layer.objects.active = ob
+    images = len(bpy.data.images)
+    assert bpy.ops.rototoon.trace_image() == {"FINISHED"}
+    (content,) = (addon("blender.strokes").read(handle) for handle, _ in addon("blender.grease_pencil").drawings(ob.data.layers["Lines"]).values())
+    size = np.ptp(content.point["position"], axis=0)
+    assert len(content.sizes) >= 1 and size[2] > 5 * size[0]
+    assert image.is_dirty and len(bpy.data.images) == images
