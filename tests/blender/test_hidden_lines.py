@@ -103,7 +103,9 @@ def _hidden_material(ob, layer, handle, gp):
 
 def _masked(ob, layer, handle, gp):
     layer.use_masks = True
-    layer.mask_layers.add(ob.data.layers.new("Mask"))
+    ob.data.layers.new("Mask")
+    ob.data.layers.active = layer
+    bpy.ops.grease_pencil.layer_mask_add(name="Mask")
 
 
 def _blended(ob, layer, handle, gp):
