@@ -55,6 +55,8 @@ class Edit:
     """The material slots of the object."""
     moved: np.ndarray
     """For each stroke: whether a point was moved."""
+    cut: np.ndarray
+    """For each stroke: whether it was cut, joined or shortened."""
     same: np.ndarray
     """For each stroke: whether its look is the one that was noted."""
     rigid: np.ndarray
@@ -94,23 +96,23 @@ def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slot
     lines = content.point.get(gp.LINE)
     none = np.zeros(len(content.sizes), bool)
     if lines is None:
-        return Edit(content, mapping, [], set(), slots, none, ~none, none)
+        return Edit(content, mapping, [], set(), slots, none, none, ~none, none)
     starts, tracks = content.starts, content.strokes(gp.TRACK)
     same, rigid = dr.has_looks(content, slots), _rigid(content)
     away = (content.point[gp.TRACKED] != content.point["position"]).any(1)
     twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
-    moved, edited = none.copy(), []
+    moved, cut, edited = none.copy(), none.copy(), []
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
         own = _numbers(content, i)
         if not own or (chosen is not None and not chosen[i]):
             continue
         moved[i] = away[a:b].any() or (lines[a:b] == 0).any()
         along = content.point[gp.ALONG][a:b]
-        cut = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
-        if moved[i] or not same[i] or (cut and not rigid[i]):
+        cut[i] = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
+        if moved[i] or not same[i] or (cut[i] and not rigid[i]):
             edited.append(i)
     there = set(lines.tolist()) | set(tracks.tolist())
-    return Edit(content, mapping, edited, set(before) - there if chosen is None else set(), slots, moved, same, rigid)
+    return Edit(content, mapping, edited, set(before) - there if chosen is None else set(), slots, moved, cut, same, rigid)
 
 
 def _numbers(content: st.Content, i: int) -> set[int]:
@@ -166,11 +168,14 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
         for i in edit.reshaped():
             new = _made(edit, i, numbers[i], content, there, before, now, mapping, looks)
             if new is None:
-                left_out += 1
+                left_out += int(edit.moved[i] or edit.cut[i])
             else:
                 made += new
-        # Curves with handles or knots, and single points, stay.
         gone[[piece.index for pieces in there.values() for piece in pieces]] = True
+        # Curves with handles or knots, and single points, get the look.
+        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]]) if looks else []
+        made += [each for each in rest if not gone[each[0]]]
+        gone[[place for place, _ in rest]] = True
     return _assembled(content, gone, made, edit.slots), left_out
 
 

@@ -409,3 +409,19 @@ def test_strokes_beside_a_closed_one_are_said_not_to_be_used(addon, film):
     select(addon, film, "A", [True, True])
     bpy.ops.rototoon.make_part()
     assert "1 stroke is not used: a closed stroke is a contour by itself" in said(addon).text
+
+
+def test_curves_on_another_frame_get_the_look(addon, traced):
+    gp = addon("blender.grease_pencil")
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.fit_strokes()
+    before = ls.strokes(addon, traced, "Lines", 4)
+    bpy.context.scene.frame_set(1)
+    handle = handle_of(addon, traced, "Lines", 1)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert [each.text for each in addon("common.reports").take()] == ["6 edited strokes, on 5 other frames"]
+    now = ls.strokes(addon, traced, "Lines", 4)
+    assert list(now) == list(before) and all(np.allclose(now[number], before[number], atol=1e-2) for number in now)
+    assert all(np.allclose(radii, 0.3) for radii in radii_of(addon, traced, 4).values())
