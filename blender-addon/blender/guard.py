@@ -95,15 +95,16 @@ def sharing(ob: bpy.types.Object) -> list[bpy.types.Object]:
 
 def is_locked(layer: bpy.types.bpy_struct) -> bool:
     """Whether a layer or one of its groups is locked."""
-    return layer.lock or any(group.lock for group in _groups(layer))
+    return layer.lock or any(group.lock for group in groups_of(layer))
 
 
 def is_hidden(layer: bpy.types.bpy_struct) -> bool:
     """Whether a layer or one of its groups is hidden."""
-    return layer.hide or any(group.hide for group in _groups(layer))
+    return layer.hide or any(group.hide for group in groups_of(layer))
 
 
-def _groups(layer: bpy.types.bpy_struct) -> Iterable[bpy.types.bpy_struct]:
+def groups_of(layer: bpy.types.bpy_struct) -> Iterable[bpy.types.bpy_struct]:
+    """The groups that a layer is in, the innermost first."""
     group = layer.parent_group
     while group is not None:
         yield group

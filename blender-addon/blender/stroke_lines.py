@@ -10,8 +10,9 @@ STEPS = 6
 """Number of steps per piece of a curve."""
 
 
-def lines(content: st.Content) -> list[np.ndarray]:
-    """For each stroke the points of its line (N, 3) in layer space. The line of a closed stroke ends where it begins."""
+def lines(content: st.Content, steps: int = STEPS) -> list[np.ndarray]:
+    """For each stroke the points of its line (N, 3) in layer space. The line of a closed stroke ends where it begins. `steps` is the number of steps
+    per piece of a NURBS."""
     points = np.asarray(content.point["position"], np.float64) if len(content.sizes) else np.zeros((0, 3))
     closed = content.strokes("cyclic")
     order, knots = content.strokes("nurbs_order"), content.strokes("knots_mode")
@@ -20,7 +21,7 @@ def lines(content: st.Content) -> list[np.ndarray]:
     for i, (kind, first, last) in enumerate(zip(content.types.tolist(), content.starts, content.starts[1:])):
         own = points[first:last]
         if len(own) > 2 and kind == st.NURBS:
-            own = _nurbs(own, int(order[i]), int(knots[i]), bool(closed[i]))
+            own = _nurbs(own, int(order[i]), int(knots[i]), bool(closed[i]), steps)
         elif len(own) > 1 and kind == st.CATMULL_ROM:
             own = _catmull_rom(own, bool(closed[i]))
         elif len(own) > 1 and kind == st.BEZIER and handles[0] is not None and handles[1] is not None:
@@ -31,7 +32,7 @@ def lines(content: st.Content) -> list[np.ndarray]:
     return found
 
 
-def _nurbs(guides: np.ndarray, order: int, knots: int, closed: bool) -> np.ndarray:
+def _nurbs(guides: np.ndarray, order: int, knots: int, closed: bool, steps: int) -> np.ndarray:
     """Points on a NURBS by de Boor's algorithm, all at once. Weights are ignored."""
     degree = min(order, len(guides)) - 1
     if closed:
@@ -39,7 +40,7 @@ def _nurbs(guides: np.ndarray, order: int, knots: int, closed: bool) -> np.ndarr
     count = len(guides)
     at = _knots(count, degree, 0 if closed else knots)
     spans = np.unique(at[degree : count + 1])
-    shares = np.arange(STEPS) / STEPS
+    shares = np.arange(steps) / steps
     u = np.append((spans[:-1, None] + np.diff(spans)[:, None] * shares).ravel(), spans[-1])
     span = np.clip(np.searchsorted(at, u, "right") - 1, degree, count - 1)
     found = guides[span[:, None] - degree + np.arange(degree + 1)]

@@ -3,12 +3,15 @@
 The artist's drawings are sent as Trace Drawing and Carry Strokes read them. The results are taken as these operators write them, if the drawings are
 as they were sent. A change on one drawing may change the numbers on all others, so the lines of a shot are taken as a whole.
 
-A document has one set of drawings. So layers whose drawings are on other frames are sent as a shot of their own.
+A document has one set of drawings. So layers whose drawings are on other frames are sent as a shot of their own. New strokes are drawn in one of them.
+
+Limits: a new stroke on a line that a stroke of another of these shots follows is left out only if that shot has a result, too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,14 +58,14 @@ def sent(ob, wanted: Wanted) -> tuple[list[dict[str, Any]], str]:
     # Lines that cannot be taken in are of no use.
     guard.need(ob)
     _need_lines(ob, chosen.layers)
-    plan = plan_of(ob, chosen.layers, *lines_plan.film(ob), chosen.new)
+    plan = plan_of(ob, chosen.layers, *lines_plan.film(ob), chosen.home if chosen.new else "")
     settings = ob.rototoon
     step = {"style": settings.line_style.lower(), "sensitivity": settings.line_sensitivity, **properties.left_out_step(properties.left_out_of_lines(settings))}
     shots = []
     for group in plan.groups:
         own = [layer.name for layer in group.layers]
         home = chosen.home if chosen.home in own else own[-1]
-        lines = {"layers": own, "home": home, "new": chosen.new, "hold": wanted.hold}
+        lines = {"layers": own, "home": home, "new": group.new, "hold": wanted.hold}
         shots.append({"document": group.document, "trace": {**step, "keep_first": True} if group.keep_first else step, "lines": lines})
     return shots, chosen.left
 
@@ -99,25 +102,36 @@ def find_held(results: Sequence[collecting.Result], patterns: Mapping[str, str],
             result.held = lines_plan.held_pictures({**shown, "pattern": patterns[result.object]}, shown["first"], shown["last"], 0)
 
 
-def taking(ob, result: collecting.Result) -> Iterator[float]:
+def taking(ob, result: collecting.Result, results: Sequence[collecting.Result]) -> Iterator[float]:
     """Takes the traced strokes of a result into an object, in steps. Returns a `tracing.Done`. Raises a `Problem` if the artist's drawings are
-    others than those that were sent."""
+    others than those that were sent. `results` are those of all shots."""
     guard.need(ob)
+    plan, traced = _sent_plan(ob, result), _traced(result)
+    beside = []
+    for other in results if plan.groups[0].new else ():
+        if other is not result and other.object == result.object and other.lines and other.document is not None:
+            with suppress(Problem):
+                beside.append((_sent_plan(ob, other).groups[0], _traced(other)))
+    return (yield from tracing.finishing(ob, plan, [traced], result.lines["home"], beside))
+
+
+def _sent_plan(ob, result: collecting.Result) -> lines_plan.Plan:
+    """The plan that a result was made from. Raises a `Problem` if it is another one now."""
     lines, document = result.lines, result.document
     if not document.get("traced"):
         raise Problem("its lines have no result yet: start the batch again")
     collecting.need_same_footage(ob, footage.fields(ob, ""), document["footage"], ("width", "height", "first", "last"))
     _need_lines(ob, lines["layers"])
     # A layer from which the artist has deleted all drawings differs from what was sent. Without new strokes it would be refused as empty.
-    plan = plan_of(ob, lines["layers"], *lines_plan.film(ob), new=True)
+    plan = plan_of(ob, lines["layers"], *lines_plan.film(ob), lines["home"])
     now, before = [group.document["drawings"] for group in plan.groups], document.get("drawings", [])
     if len(now) != 1 or not _same(now[0], before):
         button = "Trace Drawing" if ob.rototoon.lines_layer in lines["layers"] else "Carry Strokes"
         raise Problem(f"its drawings on {_named(lines['layers'])} were changed since they were sent, so its lines stay as they are; press {button}")
-    plan.new, plan.hold = lines["new"], bool(lines["hold"])
+    plan.hold = bool(lines["hold"])
+    plan.groups[0].new = bool(lines["new"])
     plan.held = {picture + plan.offset for picture in result.held}
-    traced = _traced(result)
-    return (yield from tracing.finishing(ob, plan, [traced], lines["home"]))
+    return plan
 
 
 def _named(layers: Sequence[str]) -> str:

@@ -15,8 +15,10 @@ the artist's and are never written; their strokes are followed.
 `tracing`             one run: reads, traces in a thread, writes
 `given`               drawings that a document gives, as a layer
 `off_ink`             drawings of the artist whose picture was drawn anew
+`explained`           new strokes on lines that another group of layers follows
 `doubts`              which traced strokes are in doubt, and where
 `spreading`           an edit of one drawing, done on all frames
+`rototoon_changes`    traced strokes that Rototoon itself fits or cuts
 `pairing`             the same strokes of two neighbouring drawings, and clicks that change them
 `outline`             strokes that bound a part, as a closed contour
 ====================  ==============================================================================

@@ -16,7 +16,7 @@ about what it costs in the run; the library remembers it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -44,7 +44,7 @@ Trace = Callable[[dict[str, Any], str, tuple[int, int]], Traced]
 
 def find(plan: pl.Plan, trace: Trace) -> None:
     """Traces the pictures of the artist's drawings for themselves. Uses no Blender."""
-    for group in plan.groups if plan.new else ():
+    for group in (each for each in plan.groups if each.new):
         own = {frame for layer in group.layers for frame in layer.keys if plan.first <= frame <= plan.last}
         for frame in sorted(own - plan.inks.keys()):
             number = frame - plan.offset
@@ -56,11 +56,13 @@ def strokes_off(content: st.Content, mapping, found: Traced, size: tuple[int, in
     on a picture without lines: there the artist drew what the film has not."""
     if not len(found.tracks):
         return np.zeros(len(content.sizes), bool)
-    ink = _Ink(found, size)
+    points, ends = np.asarray(found.points, np.float64).reshape(-1, 2), np.asarray(found.point_offsets)
+    lines = [dense(points[a:b], bool(shut)) for a, b, shut in zip(ends, ends[1:], np.asarray(found.closed), strict=False)]
+    ink = Ink(lines, np.asarray(found.widths, np.float64), size)
     shares, lengths = np.zeros(len(content.sizes)), np.zeros(len(content.sizes))
     for i, line in enumerate(stroke_lines.lines(content)):
         if len(line) and np.isfinite(line).all():
-            points = _dense(mapping.to_pixels(line))
+            points = dense(mapping.to_pixels(line))
             lengths[i], shares[i] = len(points), ink.off(points)
     off = shares > MOST
     return off if lengths[off].sum() > NAMED * max(lengths.sum(), 1.0) else np.zeros_like(off)
@@ -72,17 +74,14 @@ def mark(handle, off: np.ndarray) -> None:
         gp.put(handle, gp.OFF_INK, off)
 
 
-class _Ink:
-    """The places of a picture that its lines explain."""
+class Ink:
+    """The places of a picture that lines explain."""
 
-    def __init__(self, found: Traced, size: tuple[int, int]):
+    def __init__(self, lines: Sequence[np.ndarray], widths: np.ndarray, size: tuple[int, int]):
         width, height = size
         self._mask = np.zeros((height, width), bool)
-        widths = np.asarray(found.widths, np.float64)
         known = widths[np.isfinite(widths)]
         reach = NEAR * max(float(np.median(known)) if len(known) else 0.0, LEAST)
-        points, ends = np.asarray(found.points, np.float64).reshape(-1, 2), np.asarray(found.point_offsets)
-        lines = [_dense(points[a:b], bool(shut)) for a, b, shut in zip(ends, ends[1:], np.asarray(found.closed), strict=False)]
         places = np.floor(np.concatenate(lines)).astype(int) if lines else np.zeros((0, 2), int)
         span = np.arange(-int(reach), int(reach) + 1)
         for dx, dy in ((dx, dy) for dx in span for dy in span if dx * dx + dy * dy <= reach * reach):
@@ -100,7 +99,7 @@ class _Ink:
         return float((~self._mask[y, x]).mean())
 
 
-def _dense(points: np.ndarray, closed: bool = False) -> np.ndarray:
+def dense(points: np.ndarray, closed: bool = False) -> np.ndarray:
     """Points on a line, one a pixel."""
     line = np.concatenate([points, points[:1]]) if closed else points
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])

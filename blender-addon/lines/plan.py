@@ -1,7 +1,8 @@
 """What one run follows and traces: groups of layers, each with a document for the library.
 
 Layers whose drawings are on the same frames are followed together, as one drawing. A drawing of the library is a complete one, so a
-layer that has no drawing on some frame of the others makes a group of its own.
+layer that has no drawing on some frame of the others makes a group of its own. New strokes are drawn by one group alone, that of the layer for them: each
+group looks for all lines of the film.
 """
 
 from __future__ import annotations
@@ -47,6 +48,8 @@ class Group:
     document: dict[str, Any]
     folder: str
     mapper: Mapper
+    new: bool = False
+    """Whether ink that no stroke explains makes new strokes."""
     keep_first: bool = False
     """Whether the first of the pictures was traced for itself by an earlier run, and stays so."""
 
@@ -59,8 +62,6 @@ class Plan:
     first: int
     """First scene frame that is written."""
     last: int
-    new: bool
-    """Whether ink that no stroke explains makes new strokes."""
     offset: int
     """The scene shows picture n on frame n + offset."""
     hold: bool = True
@@ -79,8 +80,9 @@ def film(ob) -> tuple[int, int]:
     return settings.first + settings.frame_offset, settings.last + settings.frame_offset
 
 
-def make(ob, layers: list[dr.Layer], first: int, last: int, new: bool) -> Plan:
-    """A plan for the scene frames `first` to `last`. Layers without a drawing to follow need `new`."""
+def make(ob, layers: list[dr.Layer], first: int, last: int, home: str) -> Plan:
+    """A plan for the scene frames `first` to `last`. `home` is the layer on which ink that no stroke explains makes new strokes; empty if it makes
+    none. Other layers without a drawing to follow are left out."""
     pattern = footage.pattern_of(ob)
     low, high = film(ob)
     first, last = max(first, low), min(last, high)
@@ -89,20 +91,20 @@ def make(ob, layers: list[dr.Layer], first: int, last: int, new: bool) -> Plan:
     by_frames: dict[tuple[int, ...], list[dr.Layer]] = {}
     for layer in layers:
         seeds = _seeds_of(layer, first, last, (low, high))
-        if seeds or new:
+        if seeds or layer.name == home:
             by_frames.setdefault(tuple(seeds), []).append(layer)
     if not by_frames:
         raise Problem("There are no strokes to carry: draw them on a frame of the footage first")
-    groups = [_group(ob, own, frames, first, last, pattern, new) for frames, own in by_frames.items()]
-    return Plan(groups, first, last, new, ob.rototoon.frame_offset, sums={layer.name: layer.sums() for layer in layers})
+    groups = [_group(ob, own, frames, first, last, pattern, home) for frames, own in by_frames.items()]
+    return Plan(groups, first, last, ob.rototoon.frame_offset, sums={layer.name: layer.sums() for layer in layers})
 
 
 def of_picture(layer: dr.Layer, frame: int, path: str, size: tuple[int, int], mapper) -> Plan:
     """A plan for a single picture file, whose name is a pattern with one number, 1. It is drawn on one frame."""
     shown = {"pattern": path, "first": 1, "last": 1, "fps": 24.0, "width": size[0], "height": size[1]}
     document = {"rototoon": VERSION, "footage": shown, "parts": [], "drawings": []}
-    group = Group([layer], {}, (1, 1), document, os.path.dirname(path), mapper)
-    return Plan([group], frame, frame, True, frame - 1, sums={layer.name: layer.sums()})
+    group = Group([layer], {}, (1, 1), document, os.path.dirname(path), mapper, new=True)
+    return Plan([group], frame, frame, frame - 1, sums={layer.name: layer.sums()})
 
 
 def find_held(plan: Plan) -> None:
@@ -155,7 +157,7 @@ def _seeds_of(layer: dr.Layer, first: int, last: int, shown: tuple[int, int]) ->
     return sorted({*inside, *(frame for frame in around if frame is not None)})
 
 
-def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str, new: bool) -> Group:
+def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str, home: str) -> Group:
     names = [layer.name for layer in layers]
     points = {k: _points(layer, frames) for k, layer in enumerate(layers)}
     low, high = min([first, *frames]), max([last, *frames])
@@ -167,8 +169,9 @@ def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last
             seeds[frame] = seed
             drawn.append({"frame": frame - offset, "strokes": strokes})
     document = {"rototoon": VERSION, "footage": footage.fields(ob, pattern), "parts": [], "drawings": drawn}
+    new = home in names
     keep_first = new and low not in seeds and any(low in layer.sure for layer in layers)
-    return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper, keep_first)
+    return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper, new, keep_first)
 
 
 def _points(layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:

@@ -9,7 +9,8 @@ is the similarity (turn and scale) that carries the stroke from the one frame to
 weighted by a Gaussian of the distance in share (as in moving least squares, Schaefer, McPhail & Warren 2006). So an edit moves, turns and
 grows with its own stretch of the stroke. A frame keeps its own points; d is interpolated between the edited ones.
 
-Limits: curves with handles or knots get looks, and are deleted, but not reshaped. A stroke that was drawn anew has no such marks: carry it.
+Limits: curves with handles or knots, on the edited frame or on the other one, give and get looks, and are deleted, but not reshaped: their points
+are no points of the line. What Remove Hidden Lines has left of a stroke on the edited frame gives its look only. A stroke that was drawn anew has no such marks: carry it.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ SIGMA = 0.2
 """Width of the Gaussian in shares of the length."""
 SAMPLES = 33
 """Samples of a stroke for the similarity."""
+WHOLE = 1e-3
+"""A stretch that lacks less than this share of the length is whole."""
 
 
 _FORM = {
@@ -46,15 +49,33 @@ class Edit:
     """Layer points to pixels and back, on that frame."""
     edited: list[int]
     """Indices of the strokes that differ from what was traced."""
-    touched: set[int]
-    """Numbers of all strokes that they come from."""
     deleted: set[int]
     """Numbers of strokes that are not there any more."""
     slots: marks.Slots
     """The material slots of the object."""
+    moved: np.ndarray
+    """For each stroke: whether a point was moved."""
+    cut: np.ndarray
+    """For each stroke: whether it was cut, joined or shortened."""
+    same: np.ndarray
+    """For each stroke: whether its look is the one that was noted."""
+    rigid: np.ndarray
+    """For each stroke: whether it only gives its look, since its points do not tell how its line was reshaped."""
 
     def __bool__(self) -> bool:
         return bool(self.edited or self.deleted)
+
+    def reshaped(self) -> list[int]:
+        """The edited strokes whose form is done on other frames."""
+        return [i for i in self.edited if not self.rigid[i]]
+
+    def not_reshaped(self) -> list[int]:
+        """The edited strokes of which points were moved, and that only give their look."""
+        return [i for i in self.edited if self.rigid[i] and self.moved[i]]
+
+    def numbers(self, i: int) -> set[int]:
+        """Numbers of the strokes that stroke `i` comes from."""
+        return _numbers(self.content, i)
 
 
 @dataclass
@@ -73,30 +94,52 @@ def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slot
     """The edit of a drawing. `before` are the numbers of its strokes when it was traced. Of edited strokes only the `chosen` ones
     count."""
     lines = content.point.get(gp.LINE)
+    none = np.zeros(len(content.sizes), bool)
     if lines is None:
-        return Edit(content, mapping, [], set(), set(), slots)
+        return Edit(content, mapping, [], set(), slots, none, none, ~none, none)
     starts, tracks = content.starts, content.strokes(gp.TRACK)
-    same = dr.has_looks(content, slots)
-    moved = (content.point[gp.TRACKED] != content.point["position"]).any(1)
+    same, rigid = dr.has_looks(content, slots), _rigid(content)
+    away = (content.point[gp.TRACKED] != content.point["position"]).any(1)
     twice = {number for number in tracks.tolist() if (tracks == number).sum() > 1}
-    edited, touched = [], set()
+    moved, cut, edited = none.copy(), none.copy(), []
     for i, (a, b) in enumerate(zip(starts, starts[1:])):
-        own = set(lines[a:b].tolist()) - {0}
+        own = _numbers(content, i)
         if not own or (chosen is not None and not chosen[i]):
             continue
+        moved[i] = away[a:b].any() or (lines[a:b] == 0).any()
         along = content.point[gp.ALONG][a:b]
-        cut = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
-        if cut or moved[a:b].any() or (lines[a:b] == 0).any() or not same[i]:
+        cut[i] = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
+        if moved[i] or not same[i] or (cut[i] and not rigid[i]):
             edited.append(i)
-            touched |= own
     there = set(lines.tolist()) | set(tracks.tolist())
-    return Edit(content, mapping, edited, touched, set(before) - there if chosen is None else set(), slots)
+    return Edit(content, mapping, edited, set(before) - there if chosen is None else set(), slots, moved, cut, same, rigid)
+
+
+def _numbers(content: st.Content, i: int) -> set[int]:
+    return set(content.point[gp.LINE][content.starts[i] : content.starts[i + 1]].tolist()) - {0}
+
+
+def _rigid(content: st.Content) -> np.ndarray:
+    """For each stroke: whether it is a curve or what Remove Hidden Lines has left, or comes from a number of which another stroke is one."""
+    rigid = (content.types != st.POLY) | left_by_rototoon(content)
+    owns = [_numbers(content, i) for i in range(len(rigid))]
+    numbers: set[int] = set()
+    while not (whole := set().union(*(owns[i] for i in np.flatnonzero(rigid)))) <= numbers:
+        numbers = whole
+        rigid = rigid | np.array([bool(own & numbers) for own in owns])
+    return rigid
+
+
+def left_by_rototoon(content: st.Content) -> np.ndarray:
+    """For each stroke: whether Remove Hidden Lines has left it of a stroke, as a piece or as the outline of a fill."""
+    return content.strokes(gp.INTERVAL).any(1)
 
 
 def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
     """The number of each edited stroke: its own, but that of a second piece is new, from `fresh` on."""
-    tracks, taken, result = edit.content.strokes(gp.TRACK), set(), {}
-    for i in edit.edited:
+    tracks, taken = edit.content.strokes(gp.TRACK), set()
+    result = {i: int(tracks[i]) for i in edit.edited if edit.rigid[i]}
+    for i in edit.reshaped():
         number = int(tracks[i])
         if number == 0 or number in taken:
             number, fresh = fresh, fresh + 1
@@ -112,22 +155,27 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
     made: list[tuple[int, st.Content]] = []
     left_out = 0
     if not shape:
-        made = _looked(edit, content) if looks else []
+        made = _looked(edit, content, edit.edited) if looks else []
         gone[[place for place, _ in made]] = True
     elif edit.edited:
+        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]]) if looks else []
+        gone[[place for place, _ in made]] = True
         pixels = to_complex(mapping, content.point["position"])
-        there = {number: _stroke(content, pixels, number) for number in edit.touched}
+        touched = set().union(*(edit.numbers(i) for i in edit.reshaped()))
+        there = {number: _pieces(content, pixels, number) for number in touched}
         before = to_complex(edit.mapping, edit.content.point[gp.TRACKED])
         now = to_complex(edit.mapping, edit.content.point["position"])
-        for i in edit.edited:
+        for i in edit.reshaped():
             new = _made(edit, i, numbers[i], content, there, before, now, mapping, looks)
             if new is None:
-                left_out += 1
-            elif new[1] is not None:
-                made.append(new)
-        # Curves with handles or knots stay.
-        stay = [number for number, each in there.items() if each is None]
-        gone |= np.isin(tracks, sorted(edit.touched)) & ~np.isin(tracks, stay)
+                left_out += int(edit.moved[i] or edit.cut[i])
+            else:
+                made += new
+        gone[[piece.index for pieces in there.values() for piece in pieces]] = True
+        # Curves with handles or knots, and single points, get the look.
+        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]]) if looks else []
+        made += [each for each in rest if not gone[each[0]]]
+        gone[[place for place, _ in rest]] = True
     return _assembled(content, gone, made, edit.slots), left_out
 
 
@@ -140,28 +188,40 @@ def to_complex(mapping, points: np.ndarray) -> np.ndarray:
 
 
 @dataclass
-class _There:
-    """A stroke on another frame."""
+class _Piece:
+    """A stroke on another frame, or what there is of it in one piece there."""
 
     index: int
+    points: np.ndarray
+    """Indices of its points among those of the drawing, by share."""
     shares: np.ndarray
     pixels: np.ndarray
     """Complex pixels."""
     closed: bool
 
 
-def _stroke(content: st.Content, pixels: np.ndarray, number: int) -> _There | None:
-    tracks = content.strokes(gp.TRACK)
-    places = np.flatnonzero((tracks == number) & (content.sizes > 1) & (content.types == st.POLY))
-    if not len(places):
-        return None
-    index = int(places[0])
-    a, b = content.starts[index : index + 2]
-    along = content.point.get(gp.ALONG)
-    share = dr.shares(content.point["position"][a:b]) if along is None else np.asarray(along[a:b], np.float64)
-    if (np.diff(share) < 0).any():
-        share = dr.shares(content.point["position"][a:b])
-    return _There(index, share, pixels[a:b], bool(content.strokes("cyclic")[index]))
+def _pieces(content: st.Content, pixels: np.ndarray, number: int) -> list[_Piece]:
+    """All that can be reshaped of a stroke on another frame, by share: the artist may have cut it there only."""
+    places = np.flatnonzero((content.strokes(gp.TRACK) == number) & (content.sizes > 1) & (content.types == st.POLY))
+    found = []
+    for index in places.tolist():
+        points, along = np.arange(*content.starts[index : index + 2]), content.point.get(gp.ALONG)
+        for part, shares in _stretches(content.point["position"][points], None if along is None else along[points].astype(np.float64)):
+            found.append(_Piece(index, points[part], shares, pixels[points[part]], bool(content.strokes("cyclic")[index])))
+    return sorted(found, key=lambda piece: piece.shares[0])
+
+
+def _stretches(points: np.ndarray, along: np.ndarray | None) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The stretches of a piece along which the share grows, as indices and shares: two if it runs over the seam of a closed stroke."""
+    every = np.arange(len(points))
+    jumps = [] if along is None else np.flatnonzero(np.abs(np.diff(along)) > 0.5) + 1
+    if along is not None and len(jumps) < 2:
+        # Few points may be far from each other without a seam.
+        for parts in ([every], np.split(every, jumps)):
+            turned = [part if along[part[-1]] >= along[part[0]] else part[::-1] for part in parts]
+            if all((np.diff(along[part]) >= 0).all() for part in turned):
+                return [(part, along[part]) for part in turned]
+    return [(every, dr.shares(points))]
 
 
 def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
@@ -177,7 +237,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     found: list[Run] = []
     start = 0
     for k in range(1, len(lines) + 1):
-        if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, start, k):
+        if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, lines, start, k):
             continue
         span = slice(start, k)
         found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span]))
@@ -185,10 +245,11 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     return found
 
 
-def _turns(along: np.ndarray, start: int, k: int) -> bool:
-    """Whether the share jumps at point `k`, as at the seam of a closed stroke."""
+def _turns(along: np.ndarray, lines: np.ndarray, start: int, k: int) -> bool:
+    """Whether the share jumps at point `k`, as at the seam of a closed stroke. A long step between few points goes on in its direction."""
     step = along[k] - along[k - 1]
-    return abs(step) > 0.5 or (k - start > 1 and step * (along[k - 1] - along[start]) < 0)
+    after = along[k + 1] - along[k] if k + 1 < len(along) and lines[k + 1] == lines[k] else 0.0
+    return (abs(step) > 0.5 and step * after < 0) or (k - start > 1 and step * (along[k - 1] - along[start]) < 0)
 
 
 def similarity(was: np.ndarray, here: np.ndarray, samples: np.ndarray, where: np.ndarray, closed: bool) -> np.ndarray:
@@ -203,59 +264,96 @@ def similarity(was: np.ndarray, here: np.ndarray, samples: np.ndarray, where: np
     return np.where(size > 1e-9, (weights * q * p.conj()).sum(1) / np.maximum(size, 1e-9), 1.0)
 
 
-def _made(edit, i, number, content, there, before, now, mapping, looks) -> tuple[int, st.Content | None] | None:
-    """The edited stroke `i` on another frame, with the index that it takes; no content if none of its strokes is there; `None` if it
-    cannot be reshaped."""
-    parts = [run for run in runs(edit, i, before, now) if there.get(run.number) is not None]
+def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[tuple[int, st.Content]] | None:
+    """What the edited stroke `i` is on another frame, with the indices that it takes: nothing if none of its strokes is there, several
+    strokes if it is cut there. `None` if it cannot be reshaped."""
+    parts = [run for run in runs(edit, i, before, now) if there.get(run.number)]
     if not parts:
-        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
-        return None if np.isin(content.strokes(gp.TRACK), sorted(own)).any() else (0, None)
-    base = there[parts[0].number]
-    line, where = _reshaped(edit, parts, there, before)
-    if len(line) < 2:
-        return 0, None
-    points = mapping.to_layer(np.stack([line.real, line.imag], 1)).astype(np.float32)
-    made = _like(content, base, where, points)
-    made.set_strokes("cyclic", edit.content.strokes("cyclic")[i : i + 1])
-    made.set_strokes(gp.TRACK, np.array([number], np.int32))
-    if looks:
-        _look_like(made, edit.content, i)
-    return base.index, made
+        return None if np.isin(content.strokes(gp.TRACK), sorted(edit.numbers(i))).any() else []
+    closed, found = bool(edit.content.strokes("cyclic")[i]), []
+    lines = _reshaped(edit, parts, there, before, closed)
+    for line in lines:
+        if len(line.points) < 2:
+            continue
+        points = mapping.to_layer(np.stack([line.points.real, line.points.imag], 1)).astype(np.float32)
+        made = _like(content, line.piece, line.where, points)
+        made.set_strokes("cyclic", np.array([closed and len(lines) == 1 and line.begins and line.ends]))
+        made.set_strokes(gp.TRACK, np.array([number], np.int32))
+        if looks:
+            _look_like(made, edit.content, _sources(edit.content, [i])[0])
+        found.append((line.piece.index, made))
+    return found
 
 
-def _looked(edit: Edit, content: st.Content) -> list[tuple[int, st.Content]]:
-    """The strokes of a drawing that get a look only, with their indices."""
+def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
+    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices."""
     tracks, made = content.strokes(gp.TRACK), {}
-    for i in edit.edited:
-        own = set(edit.content.point[gp.LINE][edit.content.starts[i] : edit.content.starts[i + 1]].tolist()) - {0}
-        for place in np.flatnonzero(np.isin(tracks, sorted(own)) & (content.sizes > 0)):
-            made[int(place)] = st.chosen(content, [place])
-            _look_like(made[int(place)], edit.content, i)
+    for source in _sources(edit.content, which):
+        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0)):
+            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source)
     return sorted(made.items(), key=lambda each: each[0])
 
 
-def _reshaped(edit: Edit, parts: list[Run], there: dict, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The line (complex pixels) of all runs on another frame, and the share of each point on its stroke there."""
-    samples = np.linspace(0, 1, SAMPLES)
-    lines, wheres = [], []
+@dataclass
+class _Line:
+    """A stretch of an edited stroke on another frame."""
+
+    points: np.ndarray
+    """Complex pixels."""
+    where: np.ndarray
+    """The share of each point on its stroke there."""
+    piece: _Piece
+    """What gives the attributes."""
+    begins: bool
+    """Whether it begins where the run begins, and is not cut there on this frame."""
+    ends: bool
+
+    def with_next(self, other: _Line) -> _Line:
+        """Both in one."""
+        points, where = np.concatenate([self.points, other.points]), np.concatenate([self.where, other.where])
+        return _Line(points, where, self.piece, self.begins, other.ends)
+
+
+def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], before: np.ndarray, closed: bool) -> list[_Line]:
+    """The lines of all runs on another frame: one, unless a stroke is cut there."""
+    lines: list[_Line] = []
     for run in parts:
-        here = there[run.number]
-        order = np.argsort(run.shares, kind="stable")
-        shares, moved = run.shares[order], run.moved[order]
-        inside = (here.shares > shares[0]) & (here.shares < shares[-1])
-        where = np.concatenate([[shares[0]], here.shares[inside], [shares[-1]]]) if len(shares) > 1 else shares[:1]
-        if (run.shares == run.shares[0]).all() and len(run.shares) > 1:
-            # Points that were drawn since, all at one place of the stroke.
-            where, delta = run.shares, run.moved
-        else:
-            delta = _interpolated(where, shares, moved)
+        samples = np.linspace(0, 1, SAMPLES)
         was = _original(edit, run.number, samples, before)
-        factor = similarity(was, _interpolated(samples, here.shares, here.pixels), samples, where, here.closed)
-        line = _interpolated(where, here.shares, here.pixels) + factor * delta
-        backwards = run.shares[-1] < run.shares[0]
-        lines.append(line[::-1] if backwards else line)
-        wheres.append(where[::-1] if backwards else where)
-    return np.concatenate(lines), np.concatenate(wheres)
+        stretches = [_stretch(run, piece, was, samples) for piece in there[run.number]]
+        stretches = [each for each in stretches if each is not None]
+        if run.shares[-1] < run.shares[0]:
+            stretches = [_Line(each.points[::-1], each.where[::-1], each.piece, each.ends, each.begins) for each in reversed(stretches)]
+        for k, each in enumerate(stretches):
+            if lines and k == 0 and lines[-1].ends and each.begins:
+                lines[-1] = lines[-1].with_next(each)
+            else:
+                lines.append(each)
+    if closed and len(lines) > 1 and lines[-1].ends and lines[0].begins and lines[-1].piece.index == lines[0].piece.index:
+        # What lies on both sides of the seam of a closed stroke.
+        lines[0] = lines.pop().with_next(lines[0])
+        lines[0].begins = lines[0].ends = False
+    return lines
+
+
+def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _Line | None:
+    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the `samples`."""
+    order = np.argsort(run.shares, kind="stable")
+    shares, moved, here = run.shares[order], run.moved[order], piece.shares
+    first, last = max(shares[0], here[0]), min(shares[-1], here[-1])
+    if first > last or (first == last and shares[0] < shares[-1]):
+        return None
+    if shares[0] == shares[-1]:
+        # Points that were drawn since, all at one place of the stroke.
+        where, delta = run.shares, run.moved
+    else:
+        where = np.concatenate([[first], here[(here > first) & (here < last)], [last]])
+        delta = _interpolated(where, shares, moved)
+    known = (samples >= here[0]) & (samples <= here[-1])
+    known = known if known.sum() > 1 else np.ones(len(samples), bool)
+    factor = similarity(was[known], _interpolated(samples[known], here, piece.pixels), samples[known], where, piece.closed)
+    points = _interpolated(where, here, piece.pixels) + factor * delta
+    return _Line(points, where, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
 
 
 def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
@@ -270,14 +368,13 @@ def _interpolated(where: np.ndarray, known: np.ndarray, values: np.ndarray) -> n
     return np.interp(where, known, values.real) + 1j * np.interp(where, known, values.imag)
 
 
-def _like(content: st.Content, base: _There, where: np.ndarray, points: np.ndarray) -> st.Content:
-    """A stroke with the attributes of stroke `base`, at shares of its length."""
-    a, b = content.starts[base.index : base.index + 2]
+def _like(content: st.Content, base: _Piece, where: np.ndarray, points: np.ndarray) -> st.Content:
+    """A stroke with the attributes of the piece `base`, at shares of the stroke's length."""
     made = st.Content(np.array([len(points)], np.int32), content.types[base.index : base.index + 1].copy())
     made.kinds = dict(content.kinds)
-    near = np.clip(np.searchsorted(base.shares, where), 0, b - a - 1)
+    near = np.clip(np.searchsorted(base.shares, where), 0, len(base.points) - 1)
     for name, values in content.point.items():
-        own = values[a:b]
+        own = values[base.points]
         if values.dtype.kind == "f":
             columns = own.reshape(len(own), -1)
             blended = np.stack([np.interp(where, base.shares, columns[:, k]) for k in range(columns.shape[1])], 1)
@@ -290,21 +387,66 @@ def _like(content: st.Content, base: _There, where: np.ndarray, points: np.ndarr
     return made
 
 
-def _look_like(made: st.Content, source: st.Content, i: int) -> None:
-    """Gives a stroke the look of stroke `i` of another drawing, by the share of the length."""
-    a, b = source.starts[i : i + 2]
-    where, known = dr.shares(made.point["position"]), dr.shares(source.point["position"][a:b])
-    for name in _looks_of(source):
-        if name in source.curve:
-            _have(made, source, name)
-            made.curve[name] = source.curve[name][i : i + 1].copy()
-        elif name in source.point:
-            own = source.point[name][a:b]
-            _have(made, source, name)
+@dataclass
+class _Source:
+    """Where a look comes from."""
+
+    stroke: int
+    """The stroke that gives what holds for a whole stroke."""
+    points: np.ndarray
+    """Indices of the points that give the rest, by their share."""
+    shares: np.ndarray
+    without: set[str]
+    """What is no look of the line: Remove Hidden Lines has changed it."""
+
+
+def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
+    """The sources of the looks of strokes. The pieces that Remove Hidden Lines has left of one stroke are one source."""
+    left, undrawn, tracks = left_by_rototoon(content), st.undrawn(content), content.strokes(gp.TRACK)
+    found, done = [], set()
+    for i in which:
+        if i in done:
+            continue
+        mine, without = np.array([i]), set()
+        if left[i] and undrawn[i]:
+            without = {"opacity"}
+        elif left[i]:
+            same = left & (tracks == tracks[i])
+            mine = np.flatnonzero(same & ~undrawn)
+            if (same & undrawn).any():
+                # The fill is with the outline alone.
+                without = {"fill_id" if gp.FILL_BY_ID else "material_index"}
+        done |= set(mine.tolist())
+        points, shares = st.ranges(content.starts[mine], content.sizes[mine]), np.concatenate([_shares(content, k) for k in mine])
+        order = np.argsort(shares, kind="stable")
+        found.append(_Source(i, points[order], shares[order], without))
+    return found
+
+
+def _shares(content: st.Content, i: int) -> np.ndarray:
+    """The shares of a stroke's points; of a piece that Remove Hidden Lines has left, on the whole stroke."""
+    span = slice(*content.starts[i : i + 2])
+    if gp.ALONG in content.point and left_by_rototoon(content)[i]:
+        return content.point[gp.ALONG][span].astype(np.float64)
+    return dr.shares(content.point["position"][span])
+
+
+def _look_like(made: st.Content, content: st.Content, source: _Source) -> None:
+    """Gives a stroke the look of strokes of another drawing, by the share of the length."""
+    where, known = _shares(made, 0), source.shares
+    for name in _looks_of(content):
+        if name in source.without:
+            continue
+        if name in content.curve:
+            _have(made, content, name)
+            made.curve[name] = content.curve[name][source.stroke : source.stroke + 1].copy()
+        elif name in content.point:
+            own = content.point[name][source.points]
+            _have(made, content, name)
             if own.dtype.kind != "f":
                 made.point[name] = own[np.abs(where[:, None] - known[None]).argmin(1)]
                 continue
-            columns = own.reshape(b - a, -1).astype(np.float64)
+            columns = own.reshape(len(own), -1).astype(np.float64)
             values = np.stack([np.interp(where, known, columns[:, k]) for k in range(columns.shape[1])], 1)
             made.point[name] = values.reshape((len(where), *own.shape[1:])).astype(own.dtype)
 

@@ -5,7 +5,7 @@ Trace Drawing, Carry Strokes and the scripts' functions use it. Nothing in the f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
@@ -20,7 +20,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from . import drawings as dr
-from . import looks, moved, numbers, off_ink, records
+from . import explained, looks, moved, numbers, off_ink, records
 from . import plan as pl
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -127,8 +127,8 @@ class Placed:
         return not self.fill, -area, self.number
 
 
-def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[float]:
-    """Writes the result of a plan in steps, and yields the finished share. Returns a `Done`.
+def finishing(ob, plan: pl.Plan, found: list[Traced], home: str, beside: Sequence[tuple[pl.Group, Traced]] = ()) -> Iterator[float]:
+    """Writes the result of a plan in steps, and yields the finished share. Returns a `Done`. `beside` are groups that another run writes.
 
     New strokes go to the layer `home`, which must be one of the plan's. Raises a `Problem` if the artist's drawings have changed.
     """
@@ -142,21 +142,38 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str) -> Iterator[flo
     yield 0.0
     done, kept = Done(), moved.read(ob, names)
     counter = numbers.Counter({layer.name: layer.next_track(plan.first, plan.last) for layer in layers})
-    for g, (group, traced) in enumerate(zip(plan.groups, found, strict=True)):
-        if plan.new:
+    results = [_result(*each, plan.offset, counter, home) for each in (*zip(plan.groups, found, strict=True), *beside)]
+    for own in results[: len(found)]:
+        group, traced, keyed = own.group, own.traced, own.keyed
+        if group.new:
             found_bare = bare(traced, group.document["footage"]["height"])
-            done.bare |= {number + plan.offset for number in found_bare} & set(range(plan.first, plan.last + 1))
-        own = [layer.name for layer in group.layers]
-        keyed = _keyed(group, traced, plan.offset, counter, home if home in own else own[-1])
+            # What the artist has drawn there was not looked for.
+            done.bare |= {number + plan.offset for number in found_bare} & set(range(plan.first, plan.last + 1)) - group.seeds.keys()
+        left_out = _left_out(ob, own, [each for each in results if each is not own], plan.offset, home)
         for k, layer in enumerate(group.layers):
             record = kept.setdefault(layer.name, records.Layer())
             _mark_keys(ob, layer, group, k, keyed, record, done)
             _mark_off(ob, layer, group, k, plan, done)
-            placed = _placed(group, layer, k, traced, keyed, plan)
+            placed = _placed(group, layer, k, traced, keyed, plan, left_out)
             yield from write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
     ob.data.update_tag()
     return done
+
+
+def _result(group: pl.Group, traced: Traced, offset: int, counter, home: str) -> explained.Result:
+    own = [layer.name for layer in group.layers]
+    return explained.Result(group, traced, _keyed(group, traced, offset, counter, home if home in own else own[-1]))
+
+
+def _left_out(ob, own: explained.Result, others: list[explained.Result], offset: int, home: str) -> set[numbers.Key]:
+    """The strokes of a group that are not drawn."""
+    if not own.group.new:
+        return {key for each in own.keyed.values() for key in each} - own.followed()
+    if home == ob.rototoon.lines_layer and not own.group.seeds:
+        # Trace Drawing draws all lines there, and so does this.
+        return set()
+    return explained.strokes(own, others, offset)
 
 
 def _need_unchanged(ob, names: list[str], plan: pl.Plan) -> None:
@@ -205,8 +222,9 @@ def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: reco
 def _mark_off(ob, layer: dr.Layer, group: pl.Group, k: int, plan: pl.Plan, done: Done) -> None:
     """Marks the strokes of the artist's drawings that lie on no line of their picture."""
     size = group.document["footage"]["width"], group.document["footage"]["height"]
-    handles = gp.drawings(gp.find_layer(ob, layer.name)) if plan.inks.keys() & layer.keys.keys() else {}
-    for frame in sorted(plan.inks.keys() & layer.keys.keys()):
+    frames = plan.inks.keys() & layer.keys.keys() if group.new else set()
+    handles = gp.drawings(gp.find_layer(ob, layer.name)) if frames else {}
+    for frame in sorted(frames):
         off = off_ink.strokes_off(layer.keys[frame], group.mapper.at(k, frame), plan.inks[frame], size)
         off_ink.mark(handles[frame][0], off)
         if off.any():
@@ -225,12 +243,11 @@ def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:
     return found
 
 
-def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan) -> dict[int, list[Placed] | None]:
-    """The strokes of a layer on the frames that are written, by number; `None` for a frame that holds the drawing before."""
+def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan, left_out: set[numbers.Key]) -> dict[int, list[Placed] | None]:
+    """The strokes of a layer on the frames that are written, by number, but for those `left_out`; `None` for a frame that holds the drawing before."""
     points, widths = np.asarray(traced.points).reshape(-1, 2), np.asarray(traced.widths)
     colours, ends, sure = np.asarray(traced.colours).reshape(-1, 3), traced.point_offsets, traced.confidence
     closed, fills = traced.closed, traced.fills
-    known = {key for seed in (keyed[f] for f in group.seeds) for key in seed}
     result: dict[int, list[Placed]] = {}
     for place, number in enumerate(traced.frames.tolist()):
         frame = number + plan.offset
@@ -239,7 +256,7 @@ def _placed(group, layer: dr.Layer, k: int, traced: Traced, keyed, plan: pl.Plan
         first = traced.stroke_offsets[place]
         strokes = []
         for i, key in enumerate(keyed[frame], first):
-            if key[0] != layer.name or not (plan.new or key in known):
+            if key[0] != layer.name or key in left_out:
                 continue
             span = slice(ends[i], ends[i + 1])
             own = key[1], points[span], bool(closed[i]), widths[span], colours[i], float(sure[i]), bool(fills[i])

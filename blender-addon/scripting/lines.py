@@ -106,7 +106,7 @@ def carry_strokes(
 def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
     settings = ob.rototoon
     jobs.clear_the_way()
-    plan = plan_of(ob, names, *(frames or plans.film(ob)), new)
+    plan = plan_of(ob, names, *(frames or plans.film(ob)), home if new else "")
     style = style or settings.line_style.lower()
     sensitivity = settings.line_sensitivity if sensitivity is None else sensitivity
     options = tracing.Options(style, sensitivity, leave_out=properties.left_out_of_lines(settings))

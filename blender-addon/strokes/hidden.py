@@ -10,17 +10,18 @@ Limits: the artist's drawings are cut too, and only undo brings their lines back
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from rototoon import Pieces, Strokes, hidden_lines
 
 from ..blender import grease_pencil as gp
-from ..blender import guard, hierarchy, placement
+from ..blender import covering, guard, hierarchy, marks, placement, stroke_lines
 from ..blender import strokes as st
 from ..blender.projection import Projection
 from ..blender.seen import Seen, changed
+from ..lines import rototoon_changes as traced_changes
 
 SUFFIX = hierarchy.ASIDE
 """Suffix of the name of a layer with hidden lines."""
@@ -37,6 +38,20 @@ class Choices:
     """Whether later strokes of a layer cover earlier ones. Otherwise only layers cover layers."""
 
 
+Curve = tuple[str, int, int]
+"""Layer, frame and index of a stroke that is a curve of a kind that the library does not have."""
+
+
+@dataclass
+class Noted:
+    """What is told beside the result."""
+
+    clear: set[str] = field(default_factory=set)
+    """Layers with fills through which one sees."""
+    uncut: set[Curve] = field(default_factory=set)
+    """Curves that are hidden somewhere, and cannot be cut."""
+
+
 @dataclass
 class Cut:
     """A drawing without its hidden lines."""
@@ -51,6 +66,8 @@ class Cut:
     """Whether anything was hidden."""
     pieces: int
     """Number of hidden parts."""
+    gone: set[int]
+    """Numbers (`rototoon_track`) of the strokes of which nothing is left."""
 
 
 def is_output(layer) -> bool:
@@ -66,12 +83,22 @@ def frames_between(ob, first: int, last: int) -> list[int]:
     return sorted({first, *(number for number in numbers if first < number <= last)})
 
 
-def cut_frame(ob, frame: int, choices: Choices, seen: Seen) -> Iterator[Cut]:
-    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`."""
+def next_change(ob, last: int) -> int | None:
+    """The first frame after a range on which something can change; `None` if nothing does."""
+    if placement.moves(ob, gp.every_layer(ob)):
+        return last + 1
+    return min((number for layer in gp.every_layer(ob) if not is_output(layer) for number in gp.frame_numbers(layer) if number > last), default=None)
+
+
+def cut_frame(ob, frame: int, choices: Choices, seen: Seen, noted: Noted) -> Iterator[Cut]:
+    """The drawings of the current frame `frame`, without hidden lines. What was read is noted in `seen`, and what is to be told in `noted`."""
     scene = _Scene(ob, frame, choices)
+    noted.clear |= scene.clear
     found = hidden_lines(scene.strokes(), scene.forms, scene.depths, scene.fills)
     pieces = _Pieces(found)
     may_change = {layer.name for layer in st.editable_layers(ob, active=False)}
+    hidden = set(pieces.strokes[pieces.hidden].tolist())
+    noted.uncut |= {curve for index, curve in scene.curves.items() if index in hidden and curve[0] in may_change}
     for entry in scene.entries:
         if entry.layer.name in may_change:
             seen.note(entry.layer.name, entry.source, entry.content)
@@ -89,7 +116,7 @@ class _Entry:
     first_point: int
     fills: np.ndarray
     fine: np.ndarray
-    """Strokes with a known curve type and finite points. Others neither cover nor are cut."""
+    """Strokes with a known curve type and finite points. Others are not cut. Curves of other types cover with their lines."""
 
 
 class _Scene:
@@ -97,37 +124,58 @@ class _Scene:
 
     def __init__(self, ob, frame: int, choices: Choices):
         view = Projection(ob)
+        self.clear: set[str] = set()
+        """Layers with fills that are seen, and that hide nothing."""
         self.entries: list[_Entry] = []
-        columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
-        strokes = points = 0
+        self.curves: dict[int, Curve] = {}
+        """By index the lines of curves that cannot be cut."""
+        self._columns = {"sizes": [], "points": [], "closed": [], "forms": [], "depths": [], "fills": []}
+        self._strokes = self._count = 0
         for depth, layer in enumerate(gp.every_layer(ob)):
             number = st.shown_frame(layer, frame)
             if guard.is_hidden(layer) or is_output(layer) or number is None:
                 continue
             content = st.read(gp.drawings(layer)[number][0])
-            fine = content.finite() & (_forms(content) >= 0)
+            forms, finite = _forms(content), content.finite()
+            fine = finite & (forms >= 0)
             every, lines = st.filled(ob, content), np.arange(len(content.sizes))
-            covers = every
-            if choices.closed:
-                above = max(every.max(initial=0), 0) + 1
-                covers = np.where((every == 0) & content.strokes("cyclic"), above + lines, every)
-            self.entries.append(_Entry(layer, number, content, strokes, points, every, fine))
-            columns["sizes"].append(content.sizes)
-            columns["points"].append(_pixels(view, layer, content, fine))
-            columns["closed"].append(content.strokes("cyclic"))
-            columns["forms"].append(np.maximum(_forms(content), 0))
-            order = lines if choices.by_stroke else np.zeros_like(lines)
-            columns["depths"].append(np.stack([np.full_like(lines, depth), order], 1))
-            columns["fills"].append(np.where(fine, covers, 0))
-            strokes += len(content.sizes)
-            points += len(content.point["position"])
-        joined = {name: np.concatenate(each) if each else np.zeros(0) for name, each in columns.items()}
+            covers = self._covers(ob, layer, content, every, choices)
+            self.entries.append(_Entry(layer, number, content, self._strokes, self._count, every, fine))
+            depths = np.stack([np.full_like(lines, depth), lines if choices.by_stroke else np.zeros_like(lines)], 1)
+            closed = content.strokes("cyclic")
+            self._put(content.sizes, _pixels(view, layer, content, fine), closed, np.maximum(forms, 0), depths, np.where(fine, covers, 0))
+            lineless = st.lineless(ob, content)
+            for i, line in _curves(content, finite & ~fine):
+                if not lineless[i]:
+                    self.curves[self._strokes] = layer.name, number, i
+                self._put([len(line)], view.pixels(layer, line), closed[[i]], [_POLYLINE], depths[[i]], covers[[i]])
+        joined = {name: np.concatenate(each) if each else np.zeros(0) for name, each in self._columns.items()}
         self._points = np.ascontiguousarray(joined["points"], np.float64).reshape(-1, 2)
         self._offsets = np.concatenate([[0], np.cumsum(joined["sizes"])]).astype(np.int32)
         self._closed = joined["closed"].astype(np.uint8)
         self.forms = joined["forms"].astype(np.uint8)
         self.depths = np.ascontiguousarray(joined["depths"], np.int32)
         self.fills = joined["fills"].astype(np.int32)
+
+    def _put(self, *columns) -> None:
+        """Adds strokes, with the columns in their order."""
+        for name, values in zip(self._columns, columns, strict=True):
+            self._columns[name].append(values)
+        self._strokes += len(columns[0])
+        self._count += len(columns[1])
+
+    def _covers(self, ob, layer, content: st.Content, fills: np.ndarray, choices: Choices) -> np.ndarray:
+        """For each stroke the number of what it covers with; 0 if it covers nothing."""
+        opacity, mixes = covering.of_fills(ob, layer, content), covering.mixes(layer)
+        hides = (opacity >= covering.OPAQUE) & (not mixes)
+        if ((opacity > 0) & ~hides & (fills != 0)).any():
+            self.clear.add(layer.name)
+        covers = np.where(hides, fills, 0)
+        if choices.closed and not covering.is_masked(layer):
+            above = max(fills.max(initial=0), 0) + 1
+            closed = content.strokes("cyclic") & covering.of_lines(ob, layer, content)
+            covers = np.where((covers == 0) & closed, above + np.arange(len(fills)), covers)
+        return covers
 
     def strokes(self) -> Strokes:
         """The strokes of all layers."""
@@ -141,6 +189,16 @@ def _forms(content: st.Content) -> np.ndarray:
     uniform = quadratic & (np.where(content.strokes("cyclic"), 0, st.ENDPOINT) == knots)
     chain = quadratic & ~content.strokes("cyclic") & (knots == st.ENDPOINT_BEZIER)
     return np.select([content.types == st.POLY, uniform, chain], [_POLYLINE, _SPLINE, _CHAIN], -1)
+
+
+def _curves(content: st.Content, which: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+    """The lines that Blender draws for the strokes of a mask, with their indices. That of a closed one does not repeat its first point."""
+    lines = stroke_lines.lines(content) if which.any() else []
+    closed = content.strokes("cyclic")
+    for i in np.flatnonzero(which).tolist():
+        line = lines[i][:-1] if closed[i] else lines[i]
+        if len(line) > 1 and np.isfinite(line).all():
+            yield i, line
 
 
 def _pixels(view: Projection, layer, content: st.Content, fine: np.ndarray) -> np.ndarray:
@@ -166,8 +224,8 @@ class _Pieces:
 
 def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     content, count = entry.content, len(entry.content.sizes)
-    # Transparent lines stay, since they carry fills.
-    carriers = st.undrawn(content)
+    # Outlines without a line stay, since they carry fills.
+    carriers = st.lineless(ob, content)
     mine = np.flatnonzero((pieces.strokes >= entry.first_stroke) & (pieces.strokes < entry.first_stroke + count))
     stroke = pieces.strokes[mine] - entry.first_stroke
     mine, stroke = (each[entry.fine[stroke] & ~carriers[stroke]] for each in (mine, stroke))
@@ -176,7 +234,7 @@ def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
     seen = mine[touched[stroke] & ~pieces.hidden[mine]]
     gone = mine[touched[stroke] & pieces.hidden[mine]]
     kept = np.flatnonzero(~touched | (entry.fills != 0))
-    content = _numbered(content, touched)
+    content, tracks = _numbered(content, touched), content.strokes(gp.TRACK)
     return Cut(
         entry.layer.name,
         frame,
@@ -185,6 +243,7 @@ def _cut(ob, frame: int, entry: _Entry, pieces: _Pieces) -> Cut:
         _built(ob, entry, content, kept[:0], gone, pieces, touched),
         bool(touched.any()),
         len(gone),
+        set(tracks.tolist()) - set(tracks[kept].tolist()) - set(tracks[stroke[~pieces.hidden[mine]]].tolist()),
     )
 
 
@@ -219,6 +278,8 @@ def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces,
     result.curve = {name: values[source].copy() for name, values in content.curve.items()}
     _mark_parts(result, pieces, part, cut)
     _part_fills_from_lines(ob, result, part, entry.fills[source], touched[source])
+    if touched.any():
+        traced_changes.follow(content, result, source, marks.Slots(ob.data))
     return result
 
 
@@ -272,6 +333,9 @@ def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None
         opacity = result.point.get("opacity")
         opacity = gp.blank("opacity", int(result.starts[-1])) if opacity is None else opacity
         opacity[np.repeat(carrier, result.sizes)] = 0
+        intervals = result.strokes(gp.INTERVAL).copy()
+        intervals[carrier] = np.stack([np.zeros(carrier.sum()), result.sizes[carrier]], 1)
+        result.set_strokes(gp.INTERVAL, intervals)
         result.kinds.setdefault("opacity", "FLOAT")
         result.point["opacity"] = opacity
     lines = (part >= 0) & (fills != 0)
@@ -298,6 +362,15 @@ def own(ob, cuts: list[Cut], in_place: bool) -> dict[str, set[int]]:
     return {name: mine for name, frames in found.items() if (mine := {frame for frame in frames if kinds[name][frame][1] != gp.GENERATED})}
 
 
+def gone(cuts: list[Cut], in_place: bool) -> dict[str, dict[int, set[int]]]:
+    """By layer and frame that `write` will cut the numbers of the strokes of which nothing is left."""
+    found: dict[str, dict[int, set[int]]] = {}
+    for each in cuts:
+        if each.gone:
+            found.setdefault(each.layer, {})[each.source if in_place else each.frame] = each.gone
+    return found
+
+
 def need_unchanged(ob, cuts: list[Cut], seen: Seen) -> None:
     """Raises a `Problem` if a drawing that `write` will cut, or copy, is another one now, or another one is shown in its place."""
     names = {each.layer for each in cuts if each.changed}
@@ -308,11 +381,11 @@ def need_unchanged(ob, cuts: list[Cut], seen: Seen) -> None:
             raise changed(each.layer, each.frame)
 
 
-def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
+def write(ob, cuts: list[Cut], move: bool, in_place: bool, after: int | None = None) -> tuple[int, int]:
     """Writes cut drawings. Returns the number of changed drawings and of hidden parts.
 
     With `move`, hidden parts move to layers of their own. With `in_place`, the visible drawings are cut. Otherwise a drawing that
-    shows on several frames gets a new frame where its hidden lines change.
+    shows on several frames gets a new frame where its hidden lines change. From frame `after` on nobody has looked: what shows there stays as it was.
     """
     changed = parts = 0
     by_layer: dict[str, list[Cut]] = {}
@@ -322,31 +395,51 @@ def write(ob, cuts: list[Cut], move: bool, in_place: bool) -> tuple[int, int]:
         if not any(each.changed for each in group):
             continue
         layer = gp.find_layer(ob, name)
-        aside = hierarchy.beside(ob, layer, name + SUFFIX) if move else None
+        aside = _Aside(hierarchy.beside(ob, layer, name + SUFFIX)) if move else None
+        group = sorted(group, key=lambda cut: cut.frame)
+        kept = after is not None and group[-1].changed and _kept(layer, group[-1].source, after)
         before: Cut | None = None
-        for each in sorted(group, key=lambda cut: cut.frame):
+        for each in group:
             again = before is not None and before.source == each.source
             same = before.seen.equals(each.seen) if again else not each.changed
             number = each.source if in_place else each.frame
             if aside is not None and not (same and again):
-                _put_aside(aside, number, each.hidden)
+                aside.put(number, each.source, each.hidden)
             before = each
             if same:
                 continue
             _put(layer, number, each.source, each.seen)
             changed += 1
             parts += each.pieces
+        if aside is not None and kept:
+            aside.put(after, group[-1].source, st.chosen(group[-1].hidden, []))
     return changed, parts
 
 
-def _put_aside(layer, number: int, hidden: st.Content) -> None:
-    """Adds hidden lines to a frame. The hidden lines of an earlier frame do not show on it."""
-    known = gp.drawings(layer).get(number)
-    if known is not None:
-        hidden = st.joined(st.read(known[0]), hidden)
-    elif not len(hidden.sizes) and st.shown_frame(layer, number) is None:
-        return
-    _put(layer, number, None, hidden)
+def _kept(layer, source: int, after: int) -> bool:
+    """Keeps a drawing that will be cut as it is from frame `after` on, if it shows there. Returns whether it does."""
+    if st.shown_frame(layer, after) != source:
+        return False
+    _put(layer, after, source, st.read(gp.drawings(layer)[source][0]))
+    return True
+
+
+class _Aside:
+    """A layer with hidden lines."""
+
+    def __init__(self, layer):
+        self._layer = layer
+        self._before = {number: st.read(handle) for number, (handle, _) in gp.drawings(layer).items()}
+
+    def put(self, number: int, source: int, hidden: st.Content) -> None:
+        """Adds hidden lines of the drawing of frame `source` to a frame. What an earlier run has hidden of it still counts there; the hidden lines of
+        an earlier frame of this run do not."""
+        shown = max((frame for frame in self._before if source <= frame <= number), default=None)
+        if shown is not None:
+            hidden = st.joined(self._before[shown], hidden)
+        elif not len(hidden.sizes) and st.shown_frame(self._layer, number) is None:
+            return
+        _put(self._layer, number, None, hidden)
 
 
 def _put(layer, number: int, source: int | None, content: st.Content) -> None:

@@ -192,3 +192,236 @@ def test_a_cut_stroke_is_cut_on_all_frames(addon, traced):
         found = [np.linalg.norm(np.diff(now[n], axis=0), axis=1).sum() for n in (arm, 7)]
         assert found[0] == pytest.approx(length / 2, rel=0.1) and found[1] == pytest.approx(length / 2, rel=0.1)
         assert away(np.vstack([now[arm], now[7]]), before[frame]) < 1.5
+
+
+def radii_of(addon, ob, frame):
+    """The radii of the points by stroke number."""
+    handle = handle_of(addon, ob, "Lines", frame)
+    gp = addon("blender.grease_pencil")
+    starts = gp.offsets(handle)
+    numbers, radii = gp.value(handle, gp.TRACK, len(starts) - 1).tolist(), gp.value(handle, "radius", int(starts[-1]))
+    return {number: radii[a:b] for number, a, b in zip(numbers, starts, starts[1:])}
+
+
+def test_fitted_strokes_give_their_look_and_no_shape(addon, traced):
+    gp = addon("blender.grease_pencil")
+    bpy.ops.rototoon.fit_strokes()
+    addon("common.reports").take()
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+    handle = handle_of(addon, traced, "Lines", 1)
+    total = int(gp.offsets(handle)[-1])
+    gp.put(handle, "radius", np.full(total, 0.3))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text == "6 edited strokes, on 5 other frames"
+    for frame in range(2, 7):
+        now, radii = ls.strokes(addon, traced, "Lines", frame), radii_of(addon, traced, frame)
+        assert list(now) == list(before[frame])
+        for number, points in now.items():
+            # A stroke that became a polyline of its corners is reshaped as others: by nothing.
+            assert np.allclose(points, before[frame][number], atol=1e-2) and np.allclose(radii[number], 0.3)
+
+
+def test_moved_points_of_a_fitted_stroke_are_named(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    bpy.ops.rototoon.fit_strokes()
+    content = strokes.read(handle_of(addon, traced, "Lines", 1))
+    curve = int(content.strokes(gp.TRACK)[np.flatnonzero(content.types == strokes.NURBS)[0]])
+    edit(addon, traced, 1, curve, lambda points: points + np.float32(0.2))
+    before = {frame: ls.strokes(addon, traced, "Lines", frame)[curve] for frame in range(2, 7)}
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert any("not reshaped: 1 stroke is a curve" in each.text for each in addon("common.reports").take())
+    assert all(np.array_equal(ls.strokes(addon, traced, "Lines", frame)[curve], before[frame]) for frame in before)
+
+
+def cover(addon, ob, frame):
+    """Something filled that passes in front of both eyes and of a bit of two other lines, on this frame only."""
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    turn = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    shape = np.stack([114.8 + 45 * np.cos(turn), 73.5 + 18 * np.sin(turn)], 1)
+    ls.put(addon, ob, "Passing", frame, [(shape, True)])
+    handle = handle_of(addon, ob, "Passing", frame)
+    content = strokes.read(handle)
+    if gp.FILL_BY_ID:
+        content.set_strokes("fill_id", np.array([1], np.int32))
+    else:
+        material = ob.data.materials[0].copy()
+        material.grease_pencil.show_fill = True
+        ob.data.materials.append(material)
+        content.set_strokes("material_index", np.array([len(ob.data.materials) - 1], np.int32))
+    strokes.write(handle, content)
+    gp.layer(ob, "Passing").frames.new(frame + 1)
+    ob.data.layers.active = ob.data.layers["Lines"]
+
+
+@pytest.mark.every_version
+@pytest.mark.parametrize("frames", ["CURRENT", "RANGE"])
+def test_hidden_lines_are_no_edit(addon, traced, frames):
+    gp = addon("blender.grease_pencil")
+    cover(addon, traced, 2)
+    before = {frame: ls.strokes(addon, traced, "Lines", frame) for frame in range(1, 7)}
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines(frames=frames)
+    assert said(addon).text.startswith("4 hidden lines on 1 drawing")
+    assert len(set(before[2]) - set(ls.strokes(addon, traced, "Lines", 2))) == 2
+    with pytest.raises(RuntimeError, match="No stroke on this frame differs"):
+        bpy.ops.rototoon.spread_edits()
+    # All that is left gets thicker, and one line is deleted.
+    handle = handle_of(addon, traced, "Lines", 2)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    deleted = number_of(addon, traced, 3)
+    numbers = gp.value(handle, gp.TRACK, len(gp.offsets(handle)) - 1).tolist()
+    left = len(set(numbers) - {deleted})
+    gp.remove_strokes(handle, [i for i, number in enumerate(numbers) if number == deleted])
+    bpy.ops.rototoon.spread_edits()
+    assert said(addon).text.endswith("and 1 deleted strokes, on 5 other frames")
+    for frame in (1, 3, 4, 5, 6):
+        now, radii = ls.strokes(addon, traced, "Lines", frame), radii_of(addon, traced, frame)
+        assert list(now) == [number for number in before[frame] if number != deleted]
+        assert all(np.allclose(now[number], before[frame][number], atol=1e-2) for number in now)
+        assert sum(np.allclose(each, 0.3) for each in radii.values()) == left
+
+
+def test_moved_points_of_what_is_left_of_a_stroke_are_named(addon, traced):
+    gp = addon("blender.grease_pencil")
+    cover(addon, traced, 2)
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines()
+    handle = handle_of(addon, traced, "Lines", 2)
+    starts = gp.offsets(handle)
+    piece = int(np.flatnonzero(gp.value(handle, gp.INTERVAL, len(starts) - 1).any(1))[0])
+    points = gp.positions(handle, int(starts[-1]))
+    points[starts[piece] : starts[piece + 1]] += 0.2
+    gp.put(handle, "position", points)
+    before = ls.strokes(addon, traced, "Lines", 4)
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert any("1 stroke is what Remove Hidden Lines left" in each.text for each in addon("common.reports").take())
+    now = ls.strokes(addon, traced, "Lines", 4)
+    assert list(now) == list(before) and all(np.array_equal(now[number], before[number]) for number in now)
+
+
+def test_a_cut_fill_gives_its_width_and_stays_filled(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    body = number_of(addon, traced, 0)
+    if not gp.FILL_BY_ID:
+        pytest.skip("fills are in materials")
+    for frame in range(1, 7):
+        handle = handle_of(addon, traced, "Lines", frame)
+        content = strokes.read(handle)
+        tracks = content.strokes(gp.TRACK)
+        content.set_strokes("fill_id", np.where(tracks == body, 1, 0).astype(np.int32))
+        strokes.write(handle, content)
+    cover(addon, traced, 2)
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines()
+    handle = handle_of(addon, traced, "Lines", 2)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    bpy.ops.rototoon.spread_edits()
+    content = strokes.read(handle_of(addon, traced, "Lines", 4))
+    i = content.strokes(gp.TRACK).tolist().index(body)
+    span = slice(content.starts[i], content.starts[i + 1])
+    assert content.strokes("fill_id")[i] == 1 and (content.point["opacity"][span] == 1).all() and np.allclose(content.point["radius"][span], 0.3)
+
+
+def cut_elsewhere(addon, ob, frame, number, spans):
+    """Leaves spans of a stroke, by shares of its points, as the artist's cutter does: each a stroke with the same number."""
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    handle = handle_of(addon, ob, "Lines", frame)
+    content = strokes.read(handle)
+    i = content.strokes(gp.TRACK).tolist().index(number)
+    one, found = strokes.chosen(content, [i]), strokes.chosen(content, [k for k in range(len(content.sizes)) if k != i])
+    count = int(content.sizes[i])
+    for first, last in spans:
+        rows = np.arange(round(first * count), round(last * count)) % count
+        piece = strokes.Content(np.array([len(rows)], np.int32), one.types, {k: v[rows] for k, v in one.point.items()}, dict(one.curve), one.kinds)
+        piece.set_strokes("cyclic", np.array([False]))
+        found = strokes.joined(found, piece)
+    strokes.write(handle, found)
+    return found
+
+
+@pytest.mark.parametrize("spans", [[(0, 0.45), (0.55, 1)], [(0.1, 0.4), (0.6, 1.05)], [(0.3, 0.9)]])
+def test_pieces_of_another_frame_are_all_reshaped_and_stay_pieces(addon, traced, spans):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    body = number_of(addon, traced, 0)
+
+    def raised(ob):
+        edit(addon, ob, 1, body, lambda points: points + np.float32([0, 0, 0.2]))
+        bpy.ops.rototoon.spread_edits()
+        assert said(addon).text == "1 edited stroke, on 5 other frames"
+        return strokes.read(handle_of(addon, ob, "Lines", 4))
+
+    def pieces(content):
+        return [content.point["position"][a:b] for a, b, number in zip(content.starts, content.starts[1:], content.strokes(gp.TRACK)) if number == body]
+
+    (whole,) = pieces(raised(traced))
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    ob = bpy.context.object
+    before = pieces(cut_elsewhere(addon, ob, 4, body, spans))
+    content = raised(ob)
+    now = pieces(content)
+    assert len(now) == len(before) == len(spans) and not content.strokes("cyclic")[content.strokes(gp.TRACK) == body].any()
+    for was, here in zip(before, now):
+        assert len(here) == pytest.approx(len(was), abs=2) and away(here, whole) < 0.05
+        moved = [np.linalg.norm(here[end] - was[end]) for end in (0, -1)]
+        assert moved == pytest.approx([0.2, 0.2], abs=0.04)
+    closed = strokes.read(handle_of(addon, ob, "Lines", 5))
+    assert closed.strokes("cyclic")[closed.strokes(gp.TRACK) == body].tolist() == [True]
+
+
+def test_a_single_point_of_another_frame_stays(addon, traced):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    arm = number_of(addon, traced, 4)
+    count = len(ls.strokes(addon, traced, "Lines", 4)[arm])
+    cut_elsewhere(addon, traced, 4, arm, [(0, 0.8), (0.9, 0.9 + 1.01 / count)])
+    edit(addon, traced, 1, arm, lambda points: points + np.float32([0, 0, 0.1]))
+    bpy.ops.rototoon.spread_edits()
+    now = strokes.read(handle_of(addon, traced, "Lines", 4))
+    assert sorted(now.sizes[now.strokes(gp.TRACK) == arm] > 1) == [False, True]
+
+
+def select(addon, ob, layer, which):
+    handle = handle_of(addon, ob, layer, 1)
+    handle.attributes.new(".selection", "BOOLEAN", "CURVE").data.foreach_set("value", which)
+
+
+@pytest.mark.parametrize("close", ["hide", "lock"])
+def test_a_selection_on_a_layer_that_edit_mode_does_not_reach_is_no_part(addon, film, close):
+    body, eye = ls.lines(0)[0][0], ls.lines(0)[1][0]
+    for name, line in (("A", eye), ("Off", body)):
+        ls.put(addon, film, name, 1, [(line, True)])
+        select(addon, film, name, [True])
+    setattr(film.data.layers["Off"], close, True)
+    bpy.ops.rototoon.make_part(name="eye")
+    (contour,) = ls.strokes(addon, film, "Contours", 1).values()
+    assert np.ptp(contour, axis=0) == pytest.approx(np.ptp(eye, axis=0), abs=1.0)
+    assert said(addon).text.startswith('"eye" is a new part')
+    setattr(film.data.layers["A"], close, True)
+    with pytest.raises(RuntimeError, match="No strokes are selected on layers that are neither hidden nor locked"):
+        bpy.ops.rototoon.make_part()
+
+
+def test_strokes_beside_a_closed_one_are_said_not_to_be_used(addon, film):
+    ls.put(addon, film, "A", 1, [(ls.lines(0)[1][0], True), (ls.lines(0)[4][0], False)])
+    select(addon, film, "A", [True, True])
+    bpy.ops.rototoon.make_part()
+    assert "1 stroke is not used: a closed stroke is a contour by itself" in said(addon).text
+
+
+def test_curves_on_another_frame_get_the_look(addon, traced):
+    gp = addon("blender.grease_pencil")
+    bpy.context.scene.frame_set(4)
+    bpy.ops.rototoon.fit_strokes()
+    before = ls.strokes(addon, traced, "Lines", 4)
+    bpy.context.scene.frame_set(1)
+    handle = handle_of(addon, traced, "Lines", 1)
+    gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    addon("common.reports").take()
+    bpy.ops.rototoon.spread_edits()
+    assert [each.text for each in addon("common.reports").take()] == ["6 edited strokes, on 5 other frames"]
+    now = ls.strokes(addon, traced, "Lines", 4)
+    assert list(now) == list(before) and all(np.allclose(now[number], before[number], atol=1e-2) for number in now)
+    assert all(np.allclose(radii, 0.3) for radii in radii_of(addon, traced, 4).values())

@@ -71,7 +71,7 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
         for result in results:
             ob = self._scene.objects.get(result.object)
             why = result.failure if result.document is None else "" if ob is not None else "no such object in the scene"
-            whys = [why] if why else (yield from self._take(ob, result, found))
+            whys = [why] if why else (yield from self._take(ob, result, results, found))
             failed += [f'"{result.object}": {why}' for why in whys]
         if not found.objects:
             raise Problem("Nothing was taken: " + "; ".join(failed))
@@ -80,13 +80,13 @@ class ROTOTOON_OT_collect_results(Long, bpy.types.Operator):
             self.warn("the results have no contour beside your keys, no line and no paint")
         return str(found)
 
-    def _take(self, ob, result: collecting.Result, found: "_Found"):
-        """Takes contours, lines and paint in, each though the others could not be taken. Returns why something was not."""
+    def _take(self, ob, result: collecting.Result, results: list[collecting.Result], found: "_Found"):
+        """Takes contours, lines and paint of one of the results in, each though the others could not be taken. Returns why something was not."""
         works = []
         if result.document.get("parts"):
             works.append((collecting.collecting(ob, result.document, result.numbers), self._count_contours))
         if result.lines:
-            works.append((tracing.taking(ob, result), self._count_lines))
+            works.append((tracing.taking(ob, result, results), self._count_lines))
         if result.document.get("filled"):
             works.append((painting.taking(ob, result.document), self._count_paint))
         failed = [] if works else ["its result is empty"]

@@ -9,6 +9,7 @@ from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...capture import contours, document, identity
 from ...common.operators import Guarded
+from ...common.wording import counted
 from .. import outline
 from .tracing_base import OnFootage
 
@@ -39,16 +40,25 @@ class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
         settings = ob.rototoon
         guard.need_named(ob, [settings.contours_layer], hidden=True)
         wanted = self._wanted()
-        found = _strokes(ob, frame, wanted)
+        layers = st.drawn_layers(ob, active=False)
+        # Edit Mode keeps the selection of layers on which it neither shows nor selects anything.
+        reachable = layers if wanted else guard.open_layers(layers)
+        found = _strokes(ob, frame, reachable, wanted)
         if not found and wanted:
             raise Problem(f"numbers: found {self.numbers!r}, expected numbers of strokes on frame {frame}")
         if not found:
-            raise Problem("No strokes are selected: select the strokes around the part in Edit Mode, then press Make Part")
+            where = " on layers that are neither hidden nor locked" if _strokes(ob, frame, layers, wanted) else ""
+            raise Problem(f"No strokes are selected{where}: select the strokes around the part in Edit Mode, then press Make Part")
         unit = max(settings.height / 540, 1.0)
         contour, gap = outline.joined(found)
         contour = outline.thinned(contour, TOLERANCE * unit, SPACING * unit)
         if len(contour) < 3:
             raise Problem("The selected strokes enclose nothing")
+        if any(closed for _, closed in found) and len(found) > 1:
+            rest = len(found) - 1
+            self.warn(
+                f"{counted(rest, 'stroke')} {'is' if rest == 1 else 'are'} not used: a closed stroke is a contour by itself, and of several the longest counts"
+            )
         if gap > GAP * unit:
             self.warn(f"the largest gap between two strokes is {gap:.0f} pixels: look at the contour there")
         name = self.name.strip()
@@ -75,10 +85,10 @@ class ROTOTOON_OT_make_part(Guarded, OnFootage, bpy.types.Operator):
             raise Problem(f"numbers: found {self.numbers!r}, expected whole numbers, separated by commas") from error
 
 
-def _strokes(ob, frame: int, wanted: set[int] | None) -> list[tuple[np.ndarray, bool]]:
-    """Pixels of the strokes on all layers but those with contours: the selected ones, or those with the wanted numbers."""
+def _strokes(ob, frame: int, layers: list, wanted: set[int] | None) -> list[tuple[np.ndarray, bool]]:
+    """Pixels of strokes on layers: of the selected ones, or of those with the wanted numbers."""
     found = []
-    for layer in st.drawn_layers(ob, active=False):
+    for layer in layers:
         shown = st.shown_frame(layer, frame)
         if shown is None:
             continue

@@ -73,7 +73,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         if not self.delete:
             edit.deleted = set()
         if not (self.shape or self.look):
-            edit.edited, edit.touched = [], set()
+            edit.edited = []
         return layer.name, shown, edit, contents, mapper
 
     def _steps(self):
@@ -110,15 +110,26 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         records.write(self._ob.data, kept)
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
-        if self._left_out:
-            curves = "1 stroke is a curve" if self._left_out == 1 else f"{self._left_out} strokes are curves"
-            self.warn(f"not reshaped: {curves} with handles or knots")
+        self.warn(self._not_reshaped())
         edited = sum(len(edit.edited) for _, _, edit, *_ in self._work_on)
         deleted = sum(len(edit.deleted) for _, _, edit, *_ in self._work_on)
         frames = len({frame for name, frame, _ in self._done}) - len({shown for _, shown, *_ in self._work_on})
         said = [f"{edited} edited"] if edited else []
         said += [f"{deleted} deleted"] if deleted else []
         return f"{' and '.join(said)} {'stroke' if edited + deleted == 1 else 'strokes'}, on {counted(frames, 'other frame')}"
+
+    def _not_reshaped(self) -> str:
+        """Which moved strokes are not reshaped on other frames; empty if all are."""
+        curves, pieces = self._left_out, 0
+        for _, _, edit, *_ in self._work_on if self.shape else ():
+            left = int(spreading.left_by_rototoon(edit.content)[edit.not_reshaped()].sum())
+            curves, pieces = curves + len(edit.not_reshaped()) - left, pieces + left
+        said = []
+        if curves:
+            said.append(f"{'1 stroke is a curve' if curves == 1 else f'{curves} strokes are curves'} with handles or knots")
+        if pieces:
+            said.append(f"{'1 stroke is' if pieces == 1 else f'{pieces} strokes are'} what Remove Hidden Lines left: move the points on another frame")
+        return f"not reshaped: {', and '.join(said)}" if said else ""
 
 
 def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:

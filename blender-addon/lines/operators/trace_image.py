@@ -94,9 +94,11 @@ def _copied(empty, frame: int, folder: str) -> tuple[str, tuple[int, int]]:
     image = empty.data
     if image is None or image.source in {"MOVIE", "VIEWER", "TILED"}:
         raise Problem(f'"{empty.name}" shows no still image: take the movie as footage, with Footage from Reference Image')
-    if image.packed_file is not None or image.source == "GENERATED" or not image.filepath:
+    drawn_on = image.is_dirty and image.source == "FILE"
+    if drawn_on or image.packed_file is not None or image.source == "GENERATED" or not image.filepath:
         suffix, target = ".png", os.path.join(folder, "picture_1.png")
-        copy = image.copy()
+        # A copy of an image has not what was drawn on it since it was saved.
+        copy = _of_pixels(image) if drawn_on or image.source == "GENERATED" else image.copy()
         try:
             copy.file_format = "PNG"
             copy.save(filepath=target)
@@ -108,6 +110,25 @@ def _copied(empty, frame: int, folder: str) -> tuple[str, tuple[int, int]]:
         target = os.path.join(folder, "picture_1" + suffix)
         shutil.copyfile(source, target)
     return os.path.join(folder, "picture_%d" + suffix), footage.size_of(target)
+
+
+def _of_pixels(image) -> bpy.types.Image:
+    """A new image with the pixels that an image has now. Raises a `Problem` if it has none."""
+    pixels = np.empty(len(image.pixels), np.float32)
+    width, height = image.size
+    if not len(pixels):
+        raise Problem(f'The image "{image.name}" has no pixels: save it, or load it anew')
+    image.pixels.foreach_get(pixels)
+    found = bpy.data.images.new("Rototoon", width, height, alpha=True, float_buffer=image.is_float)
+    found.colorspace_settings.name = image.colorspace_settings.name
+    rgba = np.ones((height * width, 4), np.float32)
+    channels = len(pixels) // max(height * width, 1)
+    if channels < 3:
+        rgba[:, :3] = pixels.reshape(-1, channels)[:, :1]
+    else:
+        rgba[:, :channels] = pixels.reshape(-1, channels)
+    found.pixels.foreach_set(rgba.ravel())
+    return found
 
 
 def _shown(empty, image, frame: int) -> str:

@@ -77,7 +77,7 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
     def start(self, context, chosen: choosing.Chosen):
         """The worker for some layers."""
         self._ob, self._home = context.object, chosen.home
-        self._plan = plan_of(self._ob, chosen.layers, *self.span(context), chosen.new)
+        self._plan = plan_of(self._ob, chosen.layers, *self.span(context), chosen.home if chosen.new else "")
         self._plan.hold = self.hold
         settings = self._ob.rototoon
         style = settings.line_style if self.style == "SETTINGS" else self.style
@@ -94,11 +94,11 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
         return told(done)
 
 
-def plan_of(ob, names: list[str], first: int, last: int, new: bool) -> pl.Plan:
-    """The plan for some layers and scene frames. Reads the layers, and changes nothing."""
+def plan_of(ob, names: list[str], first: int, last: int, home: str) -> pl.Plan:
+    """The plan for some layers and scene frames; `home` is as for `plan.make`. Reads the layers, and changes nothing."""
     guard.need_apart(ob, names)
     wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
-    return pl.make(ob, dr.read(ob, names, wanted), first, last, new)
+    return pl.make(ob, dr.read(ob, names, wanted), first, last, home)
 
 
 def where_to_look(done: tracing.Done) -> str:

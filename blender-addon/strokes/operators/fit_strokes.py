@@ -4,12 +4,14 @@ import bpy
 import numpy as np
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, projection, seen, selection
+from ...blender import guard, marks, placement, projection, seen, selection
 from ...blender import strokes as st
 from ...blender.errors import Problem
+from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined
+from ...lines import rototoon_changes as traced_changes
 from ...tween import rototoon_changes
 from .. import fitting, weights
 
@@ -70,18 +72,18 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     def begin(self, context):
         self._ob = context.object
         self.warn(guard.left_out(st.drawn_layers(self._ob, self.layers == "ACTIVE")))
-        self._drawings = [
-            (layer.name, number)
-            for layer in st.editable_layers(self._ob, self.layers == "ACTIVE")
-            for number in self._numbers(layer, context.scene.frame_current)
-        ]
+        layers = st.editable_layers(self._ob, self.layers == "ACTIVE")
+        self._drawings = [(layer.name, number) for layer in layers for number in self._numbers(layer, context.scene.frame_current)]
+        self._travels = self.unit == "PIXELS" and self.frames != "CURRENT" and placement.moves(self._ob, layers)
+        if self._travels:
+            self._drawings.sort(key=lambda each: each[1])
         if not self._drawings:
             raise Problem(
                 "No drawings to fit on these frames: choose other frames or layers, or unlock the layers. "
                 "Contours are not changed"
             )
-        self._done, self._seen = [], seen.Seen(self._ob)
-        return jobs.Stepper(self._steps(), "Fitting")
+        self._done, self._seen, self._deep = [], seen.Seen(self._ob), 0
+        return jobs.Stepper(self._steps(context.scene), "Fitting")
 
     def _numbers(self, layer, current: int) -> list[int]:
         if self.frames == "CURRENT":
@@ -89,16 +91,23 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
             return [] if shown is None else [shown]
         return gp.frame_numbers(layer, selected=self.frames == "SELECTED")
 
-    def _steps(self):
-        for index, (name, number) in enumerate(self._drawings):
-            layer = gp.find_layer(self._ob, name)
-            handle = gp.drawings(layer)[number][0]
-            content = st.read(handle)
-            fitted = fitting.fit(content, self._wanted(handle, content), *self._scale(layer, content))
-            if fitted is not None:
-                self._done.append((name, number, fitted))
-                self._seen.note(name, number, content)
-            yield (index + 1) / len(self._drawings)
+    def _steps(self, scene):
+        slots = marks.Slots(self._ob.data)
+        with kept(scene):
+            for index, (name, number) in enumerate(self._drawings):
+                if self._travels and number != scene.frame_current:
+                    # A pixel is as large as the camera shows it there.
+                    scene.frame_set(number)
+                layer = gp.find_layer(self._ob, name)
+                handle = gp.drawings(layer)[number][0]
+                content = st.read(handle)
+                fitted = fitting.fit(content, self._wanted(handle, content), *self._scale(layer, content))
+                self._deep += 0 if fitted is None else fitted.deep
+                if fitted is not None and fitted.fitted:
+                    traced_changes.follow(content, fitted.content, np.arange(len(content.sizes)), slots)
+                    self._done.append((name, number, fitted))
+                    self._seen.note(name, number, content)
+                yield (index + 1) / len(self._drawings)
 
     def _wanted(self, handle, content: st.Content) -> np.ndarray:
         if not self.selected or self._ob.mode != "EDIT" or not len(content.sizes):
@@ -127,7 +136,11 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         with rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
+        marks.remember(self._ob.data)
         self._ob.data.update_tag()
+        if self._deep:
+            stay = "1 stroke lies in no plane and stays" if self._deep == 1 else f"{self._deep} strokes lie in no plane and stay"
+            self.warn(f"{stay}: a curve would be farther away than the tolerance")
         strokes = sum(fitted.fitted for *_, fitted in self._done)
         if not strokes:
             return "No stroke became lighter"

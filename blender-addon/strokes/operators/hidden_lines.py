@@ -3,13 +3,14 @@
 import bpy
 
 from ...blender import grease_pencil as gp
-from ...blender import guard, seen
+from ...blender import guard, marks, seen
 from ...blender import strokes as st
 from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnDrawing
 from ...common.wording import counted, joined, listed
+from ...lines import rototoon_changes as traced_changes
 from ...tween import rototoon_changes
 from .. import hidden, weights
 
@@ -75,16 +76,17 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
 
     def begin(self, context):
         self._ob, scene = context.object, context.scene
-        self._frames = [scene.frame_current]
+        self._frames, self._after = [scene.frame_current], None
         if self.frames == "RANGE":
             self._frames = hidden.frames_between(self._ob, scene.frame_start, scene.frame_end)
+            self._after = hidden.next_change(self._ob, scene.frame_end)
         if not any(not guard.is_hidden(layer) and gp.frame_numbers(layer) for layer in gp.every_layer(self._ob)):
             raise Problem("No drawings are visible: draw something, or show a layer")
         if not st.editable_layers(self._ob, active=False):
             raise Problem("No layer can be cut: unlock one. Contours are not changed, since tracking needs their points")
         self._need_open()
         self.warn(guard.left_out(st.drawn_layers(self._ob, active=False)))
-        self._cuts, self._seen = [], seen.Seen(self._ob)
+        self._cuts, self._seen, self._noted = [], seen.Seen(self._ob), hidden.Noted()
         return jobs.Stepper(self._steps(scene), "Looking at frames")
 
     def _need_open(self) -> None:
@@ -99,7 +101,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
             for index, frame in enumerate(self._frames):
                 if frame != scene.frame_current:
                     scene.frame_set(frame)
-                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen))
+                self._cuts.extend(hidden.cut_frame(self._ob, frame, choices, self._seen, self._noted))
                 yield (index + 1) / len(self._frames)
 
     def finish(self, context, work) -> str:
@@ -107,13 +109,32 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         self._need_open()
         hidden.need_unchanged(self._ob, self._cuts, self._seen)
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
-        with rototoon_changes.kept(self._ob) as made:
-            drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT")
+        gone = hidden.gone(self._cuts, self.frames == "CURRENT")
+        with traced_changes.removed(self._ob, gone), rototoon_changes.kept(self._ob) as made:
+            drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT", self._after)
+        marks.remember(self._ob.data)
         self._ob.data.update_tag()
+        self.warn(self._through())
+        self.warn(self._uncut())
         if not drawings:
             return "Nothing is hidden"
         self.warn(weights.warning(self._ob))
         return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
+
+    def _through(self) -> str:
+        """Which layers have fills that hide nothing; empty if none has."""
+        if not self._noted.clear or self.covers == "CLOSED":
+            return ""
+        names = ", ".join(f'"{name}"' for name in sorted(self._noted.clear))
+        return f"lines behind fills that do not hide them stay, on {names}: the fills are transparent, masked or blended"
+
+    def _uncut(self) -> str:
+        """How many hidden lines cannot be cut; empty if all can."""
+        count = len(self._noted.uncut)
+        if not count:
+            return ""
+        lines = "1 hidden line is a curve" if count == 1 else f"{count} hidden lines are curves"
+        return f"not cut: {lines} of a kind that cannot be cut; give it the type Poly in Edit Mode (Set Curve Type), then Fit Strokes makes a curve that can"
 
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
         """Which of the cut drawings are the artist's, and what that means for in-betweens."""
