@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import world
 from .errors import Problem
 
 
@@ -141,7 +142,7 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     place = np.eye(3)
     place[:2, :2] = turn * half
     place[:2, 2] = centre
-    matrix = np.array(camera.matrix_world.normalized(), np.float64)
+    matrix = np.array(world.matrix_of(camera).normalized(), np.float64)
     if not np.linalg.det(place):
         raise Problem(f'The footage in the background of "{camera.name}" has a scale of 0: set the scale of the background image to 1')
     return View(_inverse(matrix, camera), data.type == "PERSP", np.linalg.inv(place @ unit)[:2])
@@ -200,7 +201,7 @@ def reference_view(empty, width: int, height: int) -> View:
             [0, 0, 1],
         ]
     )
-    matrix = np.array(empty.matrix_world, np.float64)
+    matrix = np.array(world.matrix_of(empty), np.float64)
     if not np.linalg.det(place):
         raise Problem(f'The image of "{empty.name}" has a size of 0: set its size to 1')
     return View(_inverse(matrix, empty), False, np.linalg.inv(place)[:2])
@@ -223,11 +224,10 @@ def need_size(ob, matrix: np.ndarray) -> np.ndarray:
 def layer_to_world(ob, layer) -> np.ndarray:
     """4×4: a layer's points to the world. The layer's parent counts. `None` is a layer that does not exist yet."""
     if layer is None:
-        return np.array(ob.matrix_world, np.float64)
+        return np.array(world.matrix_of(ob), np.float64)
     parent = layer.parent
-    base = ob.matrix_world
+    base = world.matrix_of(ob if parent is None else parent)
     if parent is not None:
-        base = parent.matrix_world
         if parent.type == "ARMATURE" and layer.parent_bone in parent.pose.bones:
             base = base @ parent.pose.bones[layer.parent_bone].matrix
         base = base @ layer.matrix_parent_inverse
