@@ -25,7 +25,7 @@ from .errors import Problem
 
 @dataclass(frozen=True)
 class Placement:
-    """Where footage is in a camera's frame: the settings of a camera background image."""
+    """Where footage is in a camera's frame: the settings of a camera background image, and the shape of its pixels."""
 
     method: str = "FIT"
     offset: tuple[float, float] = (0.0, 0.0)
@@ -33,6 +33,12 @@ class Placement:
     scale: float = 1.0
     flip_x: bool = False
     flip_y: bool = False
+    pixel_aspect: float = 1.0
+    """Width of a pixel of the footage by its height."""
+
+
+RENDERED = Placement("STRETCH")
+"""The picture that the scene renders fills the frame, whatever the shape of its pixels."""
 
 
 @dataclass(frozen=True)
@@ -131,10 +137,11 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     if data.type not in {"PERSP", "ORTHO"}:
         raise Problem(f'Camera "{camera.name}" is of type {data.type}: only perspective and orthographic cameras can be used')
     left, bottom, frame_width, frame_height = camera_frame(scene.render, data)
-    half = _frame_half_size(placement.method, width / height, frame_width, frame_height)
+    image = width * placement.pixel_aspect / height
+    half = _frame_half_size(placement.method, image, frame_width, frame_height)
     half *= placement.scale * np.array([-1 if placement.flip_x else 1, -1 if placement.flip_y else 1])
     centre = np.array([left + frame_width / 2, bottom + frame_height / 2])
-    centre += _frame_offset(placement.offset, data, width / height, frame_width, frame_height)
+    centre += _frame_offset(placement.offset, data, image, frame_width, frame_height)
     cos, sin = math.cos(-placement.rotation), math.sin(-placement.rotation)
     turn = np.array([[cos, -sin], [sin, cos]])
     # Pixel to (u, v): to -1..1 with y up, then scale, rotation, offset.

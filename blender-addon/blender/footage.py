@@ -253,6 +253,16 @@ def background_source(camera) -> tuple[Source, object]:
     raise Problem(f'Camera "{camera.name}" has no background image: add one in its properties, Background Images')
 
 
+def pixel_aspect(entry) -> float:
+    """Width by height of a pixel of what a background image shows."""
+    if entry.source == "IMAGE":
+        x, y = entry.image.display_aspect
+        return x / y
+    clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
+    x, y = clip.display_aspect
+    return x / y * clip.tracking.camera.pixel_aspect
+
+
 def bpy_scene_clip():
     """The active clip of the scene."""
     import bpy

@@ -91,10 +91,11 @@ def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
-    """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits."""
+    """The placement of the camera's background image if it shows the object's footage; otherwise the default, which fits. Without footage it is that of
+    the rendered picture, which is the frame."""
     entry = background_of(camera, ob)
     if entry is None:
-        return cameras.Placement()
+        return cameras.Placement() if ob.rototoon.pattern else cameras.RENDERED
     return cameras.Placement(
         entry.frame_method,
         tuple(entry.offset),
@@ -102,6 +103,7 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
         entry.scale,
         entry.use_flip_x,
         entry.use_flip_y,
+        footage.pixel_aspect(entry),
     )
 
 
