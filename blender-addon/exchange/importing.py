@@ -9,7 +9,7 @@ from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
-from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, unseen, writing
+from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, stamps, unseen, writing
 from . import files
 
 
@@ -71,7 +71,7 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
 
 def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
     """Writes the artist's strokes. Farther parts come first, so that nearer ones are drawn over them."""
-    offset = ob.rototoon.frame_offset
+    offset, stamp = ob.rototoon.frame_offset, stamps.settled(ob)
     drawn: dict[int, list[tuple[float, int, bool, np.ndarray]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
         for frame, points in by_frame(entry.get("keys")).items():
@@ -91,6 +91,7 @@ def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
             "cyclic": np.array([closed for _, _, closed, _ in strokes]),
             "material_index": np.full(len(strokes), material, np.int32),
             gp.PART: np.array([number for _, number, _, _ in strokes], np.int32),
+            gp.OWNER: np.full(len(strokes), stamp, np.int32),
             gp.CONTROL: np.concatenate([correspondence.identity(len(points)) for *_, points in strokes]),
         }
         stroke_rows.append(drawings[frame][0], rows)
