@@ -15,14 +15,14 @@ from . import files
 
 def apply(ob, project: dict[str, Any], material: int = 0) -> None:
     """Replaces an object's contours by those of a checked document. The object's footage must be set before."""
-    settings = ob.rototoon
+    settings, plane = ob.rototoon, plane_of(ob)
     _empty(ob)
     settings.extra = files.unknown_of_document(project)
     layer = gp.layer(ob, settings.contours_layer)
     for number, entry in enumerate(project.get("parts", []), 1):
         _add_part(settings, number, entry)
     settings.next_number = len(settings.parts) + 1
-    _write_keys(ob, layer, project, material)
+    _write_keys(ob, layer, project, material, plane)
     found = contours.read(ob)
     corrected = {frame for entry in project.get("parts", []) for name in ("pins", "centers") for frame in by_frame(entry.get(name))}
     mapper = document.mapper_of(ob, found, *(frame + settings.frame_offset for frame in corrected))
@@ -52,6 +52,14 @@ def need_open(ob, project: dict[str, Any]) -> None:
         guard.need_apart(ob, [settings.snapped_layer], hidden=True)
 
 
+def plane_of(ob) -> dict[int, np.ndarray]:
+    """The artist's points on the layer of the contours, as the first layer of a `Mapper`. Contours of a document come onto their plane."""
+    found = contours.read(ob)
+    name = ob.rototoon.contours_layer
+    points = document.drawn_points(found).get(found.layer_names.index(name)) if name in found.layer_names else None
+    return {} if points is None else {0: points}
+
+
 def _empty(ob) -> None:
     settings = ob.rototoon
     settings.parts.clear()
@@ -69,15 +77,15 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
 
 
-def _write_keys(ob, layer, project: dict[str, Any], material: int) -> None:
-    """Writes the artist's strokes. Farther parts come first, so that nearer ones are drawn over them."""
+def _write_keys(ob, layer, project: dict[str, Any], material: int, plane: dict[int, np.ndarray]) -> None:
+    """Writes the artist's strokes on the plane that points show. Farther parts come first, so that nearer ones are drawn over them."""
     offset, stamp = ob.rototoon.frame_offset, stamps.settled(ob)
     drawn: dict[int, list[tuple[float, int, bool, np.ndarray]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
         for frame, points in by_frame(entry.get("keys")).items():
             row = (float(entry.get("depth", 0.0)), number, bool(entry.get("closed", True)), np.asarray(points, np.float64))
             drawn.setdefault(frame + offset, []).append(row)
-    mapper = placement.Mapper(ob, drawn, {}, [layer.name])
+    mapper = placement.Mapper(ob, drawn, plane, [layer.name])
     gp.make_frames(layer, sorted(drawn), gp.KEYFRAME)
     drawings = gp.drawings(layer)
     for frame, strokes in drawn.items():

@@ -10,7 +10,7 @@ import numpy as np
 from rototoon.documents import by_frame
 
 from ..blender.placement import Mapper
-from . import drawn, filled
+from . import drawn, filled, importing
 
 _CONTOURS, _SNAPPED, _LINES, _FILLS = range(4)
 
@@ -22,7 +22,7 @@ def need(ob, project: dict[str, Any]) -> None:
     frames = {frame for _, frame, _ in found}
     names = [settings.contours_layer, settings.snapped_layer, settings.lines_layer, settings.fills_layer]
     # Contours are placed on the frames between their keys too.
-    mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), {}, names)
+    mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), importing.plane_of(ob), names)
     for layer, frame, points in found:
         mapper.at(layer, frame).to_layer(np.asarray(points, np.float64))
 
