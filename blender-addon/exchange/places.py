@@ -10,6 +10,7 @@ import numpy as np
 from rototoon.documents import by_frame
 
 from ..blender.placement import Mapper
+from ..lines import plane
 from . import drawn, filled, importing
 
 _CONTOURS, _SNAPPED, _LINES, _FILLS = range(4)
@@ -21,8 +22,9 @@ def need(ob, project: dict[str, Any]) -> None:
     found = [(layer, frame + settings.frame_offset, points) for layer, frame, points in _places(project)]
     frames = {frame for _, frame, _ in found}
     names = [settings.contours_layer, settings.snapped_layer, settings.lines_layer, settings.fills_layer]
+    shown = {_LINES: plane.points(ob, settings.lines_layer), _FILLS: plane.points(ob, settings.fills_layer), **importing.plane_of(ob)}
     # Contours are placed on the frames between their keys too.
-    mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), importing.plane_of(ob), names)
+    mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), shown, names)
     for layer, frame, points in found:
         mapper.at(layer, frame).to_layer(np.asarray(points, np.float64))
 

@@ -11,19 +11,25 @@ DEPTH = -2.0
 @pytest.fixture
 def before(addon, fake, tmp_path):
     """Two keys, moved towards the camera."""
-    ob, gp = shots.two_keys(addon, tmp_path), addon("blender.grease_pencil")
-    for handle, _ in gp.drawings(shots.layer_of(ob)).values():
-        points = gp.positions(handle, int(gp.offsets(handle)[-1]))
-        points[:, 1] = DEPTH
-        gp.put(handle, "position", points)
+    ob = shots.two_keys(addon, tmp_path)
+    moved(addon, ob, "Contours", DEPTH)
     bpy.ops.rototoon.match_contours()
     return ob
 
 
-def depths(addon, ob):
-    """The depths of all contours."""
+def moved(addon, ob, layer, depth):
+    """Moves what is on a layer to a depth."""
     gp = addon("blender.grease_pencil")
-    handles = [handle for handle, _ in gp.drawings(shots.layer_of(ob)).values()]
+    for handle, _ in gp.drawings(ob.data.layers[layer]).values():
+        points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+        points[:, 1] = depth
+        gp.put(handle, "position", points)
+
+
+def depths(addon, ob, layer="Contours"):
+    """The depths of all points of a layer."""
+    gp = addon("blender.grease_pencil")
+    handles = [handle for handle, _ in gp.drawings(ob.data.layers[layer]).values()]
     return np.concatenate([gp.positions(handle, int(gp.offsets(handle)[-1]))[:, 1] for handle in handles])
 
 
@@ -53,3 +59,38 @@ def test_an_import_lies_on_their_plane(addon, before, tmp_path):
     assert depths(addon, before) == pytest.approx(DEPTH, abs=1e-5)
     for name, track in addon("scripting").tracks(before).items():
         assert track.pixels == pytest.approx(seen[name].pixels, abs=2e-3)
+
+
+@pytest.mark.usefixtures("library")
+def test_lines_and_paint_lie_on_their_plane(addon, before, tmp_path):
+    assert bpy.ops.rototoon.trace_drawing(frames="CURRENT") == {"FINISHED"}
+    addon("scripting").fill_region(before, 1, (8.0, 8.0), (0.1, 0.2, 0.9))
+    for name in ("Lines", "Paint"):
+        assert depths(addon, before, name) == pytest.approx(DEPTH, abs=1e-5)
+    path = str(tmp_path / "shot.json")
+    bpy.ops.rototoon.export_document(filepath=path)
+    for name in ("Lines", "Paint"):
+        before.data.layers.remove(before.data.layers[name])
+    bpy.ops.rototoon.import_document(filepath=path, into="ACTIVE")
+    for name in ("Lines", "Paint"):
+        assert depths(addon, before, name) == pytest.approx(DEPTH, abs=1e-5)
+
+
+@pytest.mark.usefixtures("library")
+def test_lines_stay_on_a_plane_of_their_own(addon, before):
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    moved(addon, before, "Lines", 1.0)
+    bpy.context.scene.frame_set(5)
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    assert depths(addon, before, "Lines") == pytest.approx(1.0, abs=1e-5)
+
+
+@pytest.mark.usefixtures("library")
+def test_contours_on_no_plane_leave_lines_on_that_of_the_object(addon, before):
+    gp = addon("blender.grease_pencil")
+    handle = gp.drawings(shots.layer_of(before))[1][0]
+    points = gp.positions(handle, int(gp.offsets(handle)[-1]))
+    points[:, 1] += np.arange(len(points)) % 3
+    gp.put(handle, "position", points)
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    assert depths(addon, before, "Lines") == pytest.approx(0.0, abs=1e-5)
