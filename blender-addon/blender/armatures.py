@@ -34,7 +34,7 @@ def view_of(scene, which: str) -> cameras.View:
     """The view from a side, or the view of the scene's camera on the current frame."""
     if which == "CAMERA" and scene.camera is not None:
         render = scene.render
-        return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.Placement())
+        return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.RENDERED)
     to_view = np.eye(4)
     to_view[:3, :3] = _AXES["FRONT" if which == "CAMERA" else which]
     return cameras.View(to_view, False, np.array([[SCALE, 0, 0], [0, -SCALE, 0]]))

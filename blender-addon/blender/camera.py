@@ -19,12 +19,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import world
 from .errors import Problem
 
 
 @dataclass(frozen=True)
 class Placement:
-    """Where footage is in a camera's frame: the settings of a camera background image."""
+    """Where footage is in a camera's frame: the settings of a camera background image, and the shape of its pixels."""
 
     method: str = "FIT"
     offset: tuple[float, float] = (0.0, 0.0)
@@ -32,6 +33,12 @@ class Placement:
     scale: float = 1.0
     flip_x: bool = False
     flip_y: bool = False
+    pixel_aspect: float = 1.0
+    """Width of a pixel of the footage by its height."""
+
+
+RENDERED = Placement("STRETCH")
+"""The picture that the scene renders fills the frame, whatever the shape of its pixels."""
 
 
 @dataclass(frozen=True)
@@ -150,10 +157,11 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     if data.type not in {"PERSP", "ORTHO"}:
         raise Problem(f'Camera "{camera.name}" is of type {data.type}: only perspective and orthographic cameras can be used')
     left, bottom, frame_width, frame_height = camera_frame(scene.render, data)
-    half = _frame_half_size(placement.method, width / height, frame_width, frame_height)
+    image = width * placement.pixel_aspect / height
+    half = _frame_half_size(placement.method, image, frame_width, frame_height)
     half *= placement.scale * np.array([-1 if placement.flip_x else 1, -1 if placement.flip_y else 1])
     centre = np.array([left + frame_width / 2, bottom + frame_height / 2])
-    centre += _frame_offset(placement.offset, data, width / height, frame_width, frame_height)
+    centre += _frame_offset(placement.offset, data, image, frame_width, frame_height)
     cos, sin = math.cos(-placement.rotation), math.sin(-placement.rotation)
     turn = np.array([[cos, -sin], [sin, cos]])
     # Pixel to (u, v): to -1..1 with y up, then scale, rotation, offset.
@@ -161,7 +169,7 @@ def camera_view(scene, camera, width: int, height: int, placement: Placement) ->
     place = np.eye(3)
     place[:2, :2] = turn * half
     place[:2, 2] = centre
-    matrix = np.array(camera.matrix_world.normalized(), np.float64)
+    matrix = np.array(world.matrix_of(camera).normalized(), np.float64)
     if not np.linalg.det(place):
         raise Problem(f'The footage in the background of "{camera.name}" has a scale of 0: set the scale of the background image to 1')
     return View(_inverse(matrix, camera), data.type == "PERSP", np.linalg.inv(place @ unit)[:2])
@@ -220,7 +228,7 @@ def reference_view(empty, width: int, height: int) -> View:
             [0, 0, 1],
         ]
     )
-    matrix = np.array(empty.matrix_world, np.float64)
+    matrix = np.array(world.matrix_of(empty), np.float64)
     if not np.linalg.det(place):
         raise Problem(f'The image of "{empty.name}" has a size of 0: set its size to 1')
     return View(_inverse(matrix, empty), False, np.linalg.inv(place)[:2])
@@ -243,11 +251,10 @@ def need_size(ob, matrix: np.ndarray) -> np.ndarray:
 def layer_to_world(ob, layer) -> np.ndarray:
     """4×4: a layer's points to the world. The layer's parent counts. `None` is a layer that does not exist yet."""
     if layer is None:
-        return np.array(ob.matrix_world, np.float64)
+        return np.array(world.matrix_of(ob), np.float64)
     parent = layer.parent
-    base = ob.matrix_world
+    base = world.matrix_of(ob if parent is None else parent)
     if parent is not None:
-        base = parent.matrix_world
         if parent.type == "ARMATURE" and layer.parent_bone in parent.pose.bones:
             base = base @ parent.pose.bones[layer.parent_bone].matrix
         base = base @ layer.matrix_parent_inverse

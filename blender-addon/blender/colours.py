@@ -4,35 +4,36 @@ from __future__ import annotations
 
 import numpy as np
 
+from . import materials
 from . import strokes as st
 
 
 def palette(ob) -> np.ndarray:
     """Line and fill colours (M, 2, 4) of the object's materials, linear."""
     found = []
-    for material in ob.data.materials:
+    for material in materials.of(ob):
         style = material.grease_pencil if material is not None else None
         found.append([style.color[:], style.fill_color[:]] if style is not None else [[0, 0, 0, 1]] * 2)
     return np.array(found or [[[0, 0, 0, 1]] * 2], np.float64)
 
 
-def of_strokes(ob, content: st.Content, materials: np.ndarray) -> np.ndarray:
+def of_strokes(ob, content: st.Content, known: np.ndarray) -> np.ndarray:
     """The colour by which each stroke is recognised, sRGB (S, 3): the fill's colour of a filled stroke, the line's colour
     otherwise."""
-    return _mixed(content, materials, st.filled(ob, content) != 0)
+    return _mixed(content, known, st.filled(ob, content) != 0)
 
 
-def of_lines(content: st.Content, materials: np.ndarray) -> np.ndarray:
+def of_lines(content: st.Content, known: np.ndarray) -> np.ndarray:
     """The colour of each stroke's line, sRGB (S, 3), whether it is filled or not."""
-    return _mixed(content, materials, np.zeros(len(content.sizes), bool))
+    return _mixed(content, known, np.zeros(len(content.sizes), bool))
 
 
-def _mixed(content: st.Content, materials: np.ndarray, filled: np.ndarray) -> np.ndarray:
+def _mixed(content: st.Content, known: np.ndarray, filled: np.ndarray) -> np.ndarray:
     count = len(content.sizes)
     if not count:
         return np.zeros((0, 3))
-    index = np.clip(content.strokes("material_index"), 0, len(materials) - 1)
-    base = materials[index, filled.astype(int), :3]
+    index = np.clip(content.strokes("material_index"), 0, len(known) - 1)
+    base = known[index, filled.astype(int), :3]
     mixed = np.zeros((count, 4))
     points = content.point.get("vertex_color")
     some = content.sizes > 0

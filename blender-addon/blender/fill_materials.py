@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from . import grease_pencil as gp
+from . import materials
 from .line_materials import encoded, to_linear
 
 NAME = "Paint "
@@ -25,7 +26,7 @@ SAME = 0.6 / 255
 
 def material(ob: bpy.types.Object, colour: np.ndarray) -> int:
     """Index of the object's material for a colour (sRGB, 0 to 1). It is made if there is none."""
-    for place, known in enumerate(ob.data.materials):
+    for place, known in enumerate(materials.of(ob)):
         style = known.grease_pencil if known is not None else None
         if style is None or not known.name.startswith(NAME) or not _fills(style) or style.fill_color[3] <= 0.0:
             continue
@@ -36,7 +37,7 @@ def material(ob: bpy.types.Object, colour: np.ndarray) -> int:
 
 def names_of(ob: bpy.types.Object) -> list[str | None]:
     """The names of the object's materials: of the colours of paint."""
-    return [material.name if material is not None and material.grease_pencil is not None else None for material in ob.data.materials]
+    return [material.name if material is not None and material.grease_pencil is not None else None for material in materials.of(ob)]
 
 
 def names_of_strokes(ob: bpy.types.Object, content) -> list[str | None]:
@@ -49,10 +50,10 @@ def names_of_strokes(ob: bpy.types.Object, content) -> list[str | None]:
 def named(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
     """Index of the object's material for a colour with a name. A material of that name is taken where its look agrees, or it was made here:
     then the artist has changed its look since. Otherwise one is made."""
-    for place, own in enumerate(ob.data.materials):
+    for place, own in enumerate(materials.of(ob)):
         if own is not None and own.name == name and _serves(own, colour):
             return place
-    for place, own in enumerate(ob.data.materials):
+    for place, own in enumerate(materials.of(ob)):
         if own is not None and _stands_for(own, name) and _serves(own, colour):
             return place
     other = bpy.data.materials.get(name)
@@ -88,10 +89,10 @@ def look(material: bpy.types.Material) -> np.ndarray:
 def nothing(ob: bpy.types.Object) -> int:
     """Index of the object's material of shapes whose region stays without paint. It is made if there is none."""
     for place, bare in enumerate(bare_of(ob)):
-        if bare and _fills(ob.data.materials[place].grease_pencil):
+        if bare and _fills(materials.of(ob)[place].grease_pencil):
             return place
     place = _append(ob, NOTHING, np.ones(3))
-    style = ob.data.materials[place].grease_pencil
+    style = materials.of(ob)[place].grease_pencil
     style.color = style.fill_color = (1.0, 1.0, 1.0, 0.0)
     return place
 
@@ -104,7 +105,7 @@ def is_paint(name: str) -> bool:
 
 def bare_of(ob: bpy.types.Object) -> np.ndarray:
     """For each of the object's materials: whether its fill is transparent, which says that a region stays without paint."""
-    styles = [material.grease_pencil if material is not None else None for material in ob.data.materials]
+    styles = [material.grease_pencil if material is not None else None for material in materials.of(ob)]
     return np.array([style is not None and style.fill_color[3] <= 0.0 for style in styles], bool)
 
 
@@ -143,5 +144,4 @@ def _add(ob: bpy.types.Object, material: bpy.types.Material) -> int:
     """Gives an object a material. Returns its index. One without any gets an empty slot before it: its strokes have the index 0, and keep their look."""
     if not len(ob.data.materials):
         ob.data.materials.append(None)
-    ob.data.materials.append(material)
-    return len(ob.data.materials) - 1
+    return materials.append(ob, material)

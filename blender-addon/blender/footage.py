@@ -270,6 +270,16 @@ def _source_of_entry(entry) -> Source | None:
     return None
 
 
+def pixel_aspect(entry) -> float:
+    """Width by height of a pixel of what a background image shows."""
+    if entry.source == "IMAGE":
+        x, y = entry.image.display_aspect
+        return x / y
+    clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
+    x, y = clip.display_aspect
+    return x / y * clip.tracking.camera.pixel_aspect
+
+
 def bpy_scene_clip():
     """The active clip of the scene."""
     import bpy

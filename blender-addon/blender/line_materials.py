@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from . import grease_pencil as gp
+from . import materials
 
 NAME = "Line "
 """Beginning of the names of materials of lines. The colour as hexadecimal digits follows."""
@@ -19,7 +20,7 @@ BOTH_NAME = "Filled Line "
 def known(ob: bpy.types.Object, fill: bool = False) -> list[tuple[int, np.ndarray]]:
     """The object's materials of traced lines, or of solid shapes: index and colour (sRGB)."""
     found = []
-    for place, material in enumerate(ob.data.materials):
+    for place, material in enumerate(materials.of(ob)):
         style = material.grease_pencil if material is not None else None
         if style is not None and material.name.startswith(NAME) and material.name.startswith(FILL_NAME) == fill:
             found.append((place, encoded(np.array((style.fill_color if fill else style.color)[:3], np.float64))))
@@ -37,13 +38,12 @@ def make(ob: bpy.types.Object, colour: np.ndarray, fill: bool = False) -> int:
         style.fill_color = style.color
         if not gp.FILL_BY_ID:
             style.show_stroke, style.show_fill = False, True
-    ob.data.materials.append(material)
-    return len(ob.data.materials) - 1
+    return materials.append(ob, material)
 
 
 def with_fill(ob: bpy.types.Object, line: np.ndarray, fill: np.ndarray, same: float) -> int:
     """Index of the object's material for a line and its fill (sRGB, 0 to 1), within `same`. It is made if there is none."""
-    for place, material in enumerate(ob.data.materials):
+    for place, material in enumerate(materials.of(ob)):
         style = material.grease_pencil if material is not None else None
         if style is None or not material.name.startswith(BOTH_NAME) or not (gp.FILL_BY_ID or style.show_fill and style.show_stroke):
             continue
@@ -57,8 +57,7 @@ def with_fill(ob: bpy.types.Object, line: np.ndarray, fill: np.ndarray, same: fl
     style.color, style.fill_color = (*to_linear(line), 1.0), (*to_linear(fill), 1.0)
     if not gp.FILL_BY_ID:
         style.show_stroke = style.show_fill = True
-    ob.data.materials.append(material)
-    return len(ob.data.materials) - 1
+    return materials.append(ob, material)
 
 
 def to_linear(colour: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from . import camera as cameras
-from . import footage, placement
+from . import footage, placement, world
 from . import grease_pencil as gp
 from .errors import Problem
 
@@ -98,7 +98,7 @@ def _of_plane(ob, mesh) -> Source:
 
 
 def _seen(ob, picture, plane, uv, material, image) -> Source:
-    matrix = np.array(picture.matrix_world, np.float64)
+    matrix = np.array(world.matrix_of(picture), np.float64)
     return Source(matrix, cameras.Mapping(placement.view_of(ob), matrix, plane), uv, material, image, picture)
 
 

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from . import camera as cameras
-from . import footage, hierarchy
+from . import footage, hierarchy, world
 from . import grease_pencil as gp
 from .errors import Problem
 from .frames import kept
@@ -91,10 +91,11 @@ def camera_of(ob: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Placement:
-    """The placement of the camera's background image that has the object's footage; the default, which fits, if there is none."""
+    """The placement of the camera's background image that has the object's footage; the default, which fits, if there is none. Without footage it is that
+    of the rendered picture, which is the frame."""
     entry = background_of(camera, ob)
     if entry is None:
-        return cameras.Placement()
+        return cameras.Placement() if ob.rototoon.pattern else cameras.RENDERED
     return cameras.Placement(
         entry.frame_method,
         tuple(entry.offset),
@@ -102,6 +103,7 @@ def placement_in(camera: bpy.types.Object, ob: bpy.types.Object) -> cameras.Plac
         entry.scale,
         entry.use_flip_x,
         entry.use_flip_y,
+        footage.pixel_aspect(entry),
     )
 
 
@@ -149,8 +151,7 @@ def is_animated(ob: bpy.types.Object | None, carries: bool = False) -> bool:
     """Whether an object or one of its parents can move. With `carries`, the object is a parent itself."""
     by_points = False
     while ob is not None:
-        owners = [ob] + ([ob.data] if ob.type in {"CAMERA", "EMPTY"} and ob.data is not None else [])
-        if any(_has_motion(owner) for owner in owners) or len(ob.constraints) or (carries and _moves_children(ob, by_points)):
+        if world.has_own_motion(ob) or (carries and _moves_children(ob, by_points)):
             return True
         by_points = ob.parent_type.startswith("VERTEX")
         ob, carries = ob.parent, True
@@ -160,12 +161,7 @@ def is_animated(ob: bpy.types.Object | None, carries: bool = False) -> bool:
 def _moves_children(ob: bpy.types.Object, by_points: bool) -> bool:
     """Whether what an object carries can move though the object stays: with its bones, along it, or with its points."""
     if ob.type == "ARMATURE":
-        return _has_motion(ob.data) or any(len(bone.constraints) for bone in ob.pose.bones)
+        return world.has_animation(ob.data) or any(len(bone.constraints) for bone in ob.pose.bones)
     if by_points or (ob.type == "CURVE" and ob.data.use_path):
-        return _has_motion(ob.data) or _has_motion(getattr(ob.data, "shape_keys", None)) or len(ob.modifiers) > 0
+        return world.has_animation(ob.data) or world.has_animation(getattr(ob.data, "shape_keys", None)) or len(ob.modifiers) > 0
     return False
-
-
-def _has_motion(owner) -> bool:
-    data = getattr(owner, "animation_data", None)
-    return data is not None and (data.action is not None or len(data.drivers) > 0 or len(data.nla_tracks) > 0)

@@ -56,6 +56,6 @@ def _view(ob: bpy.types.Object) -> cameras.View:
         return placement.view_of(ob)
     if scene.camera is not None:
         render = scene.render
-        return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.Placement())
+        return cameras.camera_view(scene, scene.camera, render.resolution_x, render.resolution_y, cameras.RENDERED)
     front = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
     return cameras.View(front, False, np.array([[FRONT_SCALE, 0, 0], [0, -FRONT_SCALE, 0]]))

@@ -239,12 +239,21 @@ def show_instead(ob, shot: Shot) -> None:
     if block is None:
         return
     if block == ob.rototoon.reference:
-        block.data = load_sequence(shot)
+        x, y = block.data.display_aspect if block.data is not None else (1.0, 1.0)
+        block.data = _shaped(load_sequence(shot), x / y)
         _time(block.image_user, shot)
         return
     entry = placement.background_of(placement.camera_of(ob), ob)
-    entry.source, entry.image = "IMAGE", load_sequence(shot)
+    image = _shaped(load_sequence(shot), footage.pixel_aspect(entry))
+    entry.source, entry.image = "IMAGE", image
     _time(entry.image_user, shot)
+
+
+def _shaped(image, pixel_aspect: float):
+    """An image, its pixels of the shape of those that it replaces, unless it has a shape of its own."""
+    if tuple(image.display_aspect) == (1.0, 1.0):
+        image.display_aspect = (pixel_aspect, 1.0) if pixel_aspect > 1.0 else (1.0, 1.0 / pixel_aspect)
+    return image
 
 
 def _shower(ob) -> bpy.types.ID | None:

@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from . import grease_pencil as gp
-from . import guard, stroke_rows
+from . import guard, materials, stroke_rows
 
 CATMULL_ROM, POLY, BEZIER, NURBS = range(4)
 _TYPE_NAMES = ("CATMULL_ROM", "POLY", "BEZIER", "NURBS")
@@ -216,7 +216,7 @@ def filled(ob, content: Content) -> np.ndarray:
     if gp.FILL_BY_ID:
         return content.strokes("fill_id")
     index = content.strokes("material_index")
-    shown = np.array([_shows_fill(material) for material in ob.data.materials])
+    shown = np.array([_shows_fill(material) for material in materials.of(ob)])
     if not len(shown):
         return np.zeros(len(index), np.int32)
     index = np.clip(index, 0, len(shown) - 1)
@@ -228,7 +228,7 @@ def solid(ob, content: Content) -> np.ndarray:
     shapes = content.strokes("cyclic") & (filled(ob, content) != 0)
     if gp.FILL_BY_ID:
         return shapes & content.strokes("hide_stroke")
-    lined = np.array([_shows_line(material) for material in ob.data.materials] or [True])
+    lined = np.array([_shows_line(material) for material in materials.of(ob)] or [True])
     return shapes & ~lined[np.clip(content.strokes("material_index"), 0, len(lined) - 1)]
 
 
@@ -263,10 +263,10 @@ def line_material(ob, index: int) -> int:
 
     A material of that name which has a fill is the artist's, and stays as it is.
     """
-    materials = ob.data.materials
-    material = materials[min(index, len(materials) - 1)]
+    shown = materials.of(ob)
+    material = shown[min(index, len(shown) - 1)]
     name = f"{material.name} Line"
-    for place, other in enumerate(materials):
+    for place, other in enumerate(shown):
         if other is not None and _is_line_of(other, name):
             return place
     made = next((other for other in bpy.data.materials if other.library is None and _is_line_of(other, name)), None)
@@ -274,8 +274,7 @@ def line_material(ob, index: int) -> int:
         made = material.copy()
         made.name = name
         made.grease_pencil.show_fill = False
-    materials.append(made)
-    return len(materials) - 1
+    return materials.append(ob, made)
 
 
 def _is_line_of(material, name: str) -> bool:

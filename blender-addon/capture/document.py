@@ -159,14 +159,18 @@ def _need_places(found: contours.Contours) -> None:
 def mapper_of(ob, found: contours.Contours, *more: int) -> Mapper:
     """The mappings of an object's contour layers, on the frames of all drawings, those between them, and `more`."""
     _need_places(found)
-    drawn: dict[int, list[np.ndarray]] = {}
     frames = {frame for _, frame in found.drawings} | set(more)
-    for (layer, _), drawing in found.drawings.items():
-        drawn.setdefault(layer, []).extend(stroke.points for stroke in drawing.strokes if not stroke.made)
-    points = {layer: np.concatenate(rows) for layer, rows in drawn.items() if rows}
     if frames:
         frames = range(min(frames), max(frames) + 1)
-    return Mapper(ob, frames, points, found.layer_names)
+    return Mapper(ob, frames, drawn_points(found), found.layer_names)
+
+
+def drawn_points(found: contours.Contours) -> dict[int, np.ndarray]:
+    """The artist's points by the index of their layer. They show the plane on which the artist drew."""
+    drawn: dict[int, list[np.ndarray]] = {}
+    for (layer, _), drawing in found.drawings.items():
+        drawn.setdefault(layer, []).extend(stroke.points for stroke in drawing.strokes if not stroke.made)
+    return {layer: np.concatenate(rows) for layer, rows in drawn.items() if rows}
 
 
 def _part(part: contours.Part, mapper: Mapper, corrected: corrections.Corrections, offset: int) -> dict[str, Any]:

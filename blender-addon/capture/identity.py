@@ -7,7 +7,6 @@ On a frame without tracked contours the matcher finds the whole figure. On a tra
 
 from __future__ import annotations
 
-import secrets
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +15,7 @@ from ..blender import grease_pencil as gp
 from ..blender import hierarchy
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
-from . import closing, correspondence, likeness, part_names, sessions
+from . import closing, correspondence, likeness, part_names, sessions, stamps
 from .contours import Contours, Part, Stroke
 
 CLOSING_GAP = 0.05
@@ -307,13 +306,12 @@ def write(ob, found: Contours, decisions: Decisions) -> None:
 
 
 def _give_stamp(ob, found: Contours) -> None:
-    """Gives the object a stamp if it has none. It is the one that all its contours have, if parts and contours came from another object."""
-    settings = ob.rototoon
-    if not settings.stamp:
-        owners = {owner for drawing in found.drawings.values() for owner in drawing.value(gp.OWNER)[drawing.value(gp.PART) != 0].tolist()}
-        copied = len(settings.parts) and len(owners) == 1 and 0 not in owners
-        settings.stamp = owners.pop() if copied else secrets.randbelow(2**31 - 1) + 1
-    found.stamp = settings.stamp
+    """Gives the object a stamp of its own."""
+    before, found.stamp = found.stamp, stamps.settled(ob)
+    if found.stamp != before:
+        for drawing in found.drawings.values():
+            drawing.names = gp.names(drawing.handle)
+            drawing.take(drawing.handle, gp.OWNER)
 
 
 def _write_drawing(found: Contours, place: tuple[int, int], entries: list) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
-from ..blender import guard, marks, stage
+from ..blender import guard, marks, stage, world
 from ..blender import strokes as st
 from ..capture import generated, sessions
 from . import comparing, layers, looks, notes, plan
@@ -93,7 +93,7 @@ def _keep_left_over(ob, made: plan.Layer, changes: Changes) -> None:
 
 def _to_object(ob, layer) -> np.ndarray:
     """A layer's points to those of a layer without a parent and a place of its own."""
-    return np.linalg.inv(np.array(ob.matrix_world, np.float64)) @ cameras.layer_to_world(ob, layer)
+    return np.linalg.inv(np.array(world.matrix_of(ob), np.float64)) @ cameras.layer_to_world(ob, layer)
 
 
 def _write(ob, made: plan.Layer, changes: Changes) -> None:

@@ -9,21 +9,21 @@ from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
-from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, unseen, writing
+from ..capture import contours, corrections, correspondence, document, ends, exchanged, snapping, stamps, unseen, writing
 from . import files
 from .looks import Looks
 
 
 def apply(ob, project: dict[str, Any], looks: Looks | None = None) -> None:
     """Replaces an object's contours by those of a checked document. The object's footage must be set before. `looks` are those that its parts had."""
-    settings = ob.rototoon
+    settings, planes = ob.rototoon, planes_of(ob)
     _empty(ob)
     settings.extra = files.unknown_of_document(project)
     gp.layer(ob, settings.contours_layer)
     for number, entry in enumerate(project.get("parts", []), 1):
         _add_part(settings, number, entry)
     settings.next_number = len(settings.parts) + 1
-    _write_keys(ob, project, looks or Looks())
+    _write_keys(ob, project, looks or Looks(), planes)
     found = contours.read(ob)
     corrected = {frame for entry in project.get("parts", []) for name in ("pins", "centers") for frame in by_frame(entry.get(name))}
     mapper = document.mapper_of(ob, found, *(frame + settings.frame_offset for frame in corrected))
@@ -54,6 +54,12 @@ def need_open(ob, project: dict[str, Any]) -> None:
         guard.need_apart(ob, [settings.snapped_layer], hidden=True)
 
 
+def planes_of(ob) -> dict[str, np.ndarray]:
+    """The artist's points by the layer of contours on which they are. Contours of a document come onto their plane."""
+    found = contours.read(ob)
+    return {found.layer_names[index]: points for index, points in document.drawn_points(found).items()}
+
+
 def _empty(ob) -> None:
     settings = ob.rototoon
     settings.parts.clear()
@@ -71,9 +77,9 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
 
 
-def _write_keys(ob, project: dict[str, Any], looks: Looks) -> None:
-    """Writes the artist's strokes. Farther parts come first, so that nearer ones are drawn over them."""
-    settings = ob.rototoon
+def _write_keys(ob, project: dict[str, Any], looks: Looks, planes: dict[str, np.ndarray]) -> None:
+    """Writes the artist's strokes on the planes that points show. Farther parts come first, so that nearer ones are drawn over them."""
+    settings, stamp = ob.rototoon, stamps.settled(ob)
     drawn: dict[str, dict[int, list[tuple[float, int, dict[str, Any], np.ndarray]]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
         frames = drawn.setdefault(looks.layer_of(entry["name"], settings.contours_layer), {})
@@ -81,12 +87,15 @@ def _write_keys(ob, project: dict[str, Any], looks: Looks) -> None:
             frames.setdefault(picture, []).append((float(entry.get("depth", 0.0)), number, entry, np.asarray(points, np.float64)))
     for name, frames in drawn.items():
         layer, offset = gp.find_layer(ob, name), settings.frame_offset
-        mapper = placement.Mapper(ob, [picture + offset for picture in frames], {}, [name])
+        plane = {0: planes[name]} if name in planes else {}
+        mapper = placement.Mapper(ob, [picture + offset for picture in frames], plane, [name])
         gp.make_frames(layer, sorted(picture + offset for picture in frames), gp.KEYFRAME)
         drawings = gp.drawings(layer)
         for picture, strokes in frames.items():
             strokes.sort(key=lambda row: row[:2])
-            stroke_rows.append(drawings[picture + offset][0], _rows(strokes, picture, mapper.at(0, picture + offset), looks))
+            rows = _rows(strokes, picture, mapper.at(0, picture + offset), looks)
+            rows.values[gp.OWNER] = np.full(len(strokes), stamp, np.int32)
+            stroke_rows.append(drawings[picture + offset][0], rows)
 
 
 def _rows(strokes: list[tuple[float, int, dict[str, Any], np.ndarray]], picture: int, mapping, looks: Looks) -> stroke_rows.Rows:

@@ -10,6 +10,7 @@ the artist's and are never written; their strokes are followed.
 `drawings`            the drawings of a layer: the artist's, and traced ones
 `numbers`             numbers of strokes, from the library's to those of the layers
 `choosing`            the layers of a run
+`plane`               the plane on which they are drawn
 `plan`                which drawings are followed, which frames are traced, as documents
 `looks`               material, radius and opacity of strokes
 `tracing`             one run: reads, traces in a thread, writes

@@ -22,7 +22,7 @@ from ..tween import moved_keys, pairs, tweening
 from ..tween import records as tween_records
 from ..tween.charts import Choices
 from . import drawings as dr
-from . import looks, moved, records, tracing
+from . import looks, moved, plane, records, tracing
 
 Strokes = Mapping[int, list[tracing.Placed]]
 """By scene frame, from back to front."""
@@ -73,11 +73,12 @@ def draw(ob, name: str, film: Film) -> Done:
     """Draws a film on the layer `name`, in the place of generated drawings there."""
     guard.need_apart(ob, [name])
     target = gp.layer(ob, name)
+    shown = {0: plane.points(ob, name)}
     own = _cleared(ob, name, target, film)
     keys = {frame: strokes for frame, strokes in sorted(film.keys.items()) if frame not in own}
     traced = {frame: strokes for frame, strokes in sorted(film.traced.items()) if frame not in own | film.keys.keys()}
     done = Done(keys=len(keys), stayed=own & film.keys.keys())
-    mapper = Mapper(ob, {*keys, *traced, *film.between}, {}, [name])
+    mapper = Mapper(ob, {*keys, *traced, *film.between}, shown, [name])
     known = _known(ob, traced)
     if mapper.still:
         traced = dict(traced) | dict.fromkeys(_held(keys, traced))

@@ -22,7 +22,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from . import drawings as dr
-from . import numbers
+from . import numbers, plane
 
 VERSION = 1
 
@@ -159,7 +159,7 @@ def _seeds_of(layer: dr.Layer, first: int, last: int, shown: tuple[int, int]) ->
 
 def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last: int, pattern: str, home: str) -> Group:
     names = [layer.name for layer in layers]
-    points = {k: _points(layer, frames) for k, layer in enumerate(layers)}
+    points = {k: _points(ob, layer, frames) for k, layer in enumerate(layers)}
     low, high = min([first, *frames]), max([last, *frames])
     mapper = Mapper(ob, range(low, high + 1), {k: each for k, each in points.items() if len(each)}, names)
     offset, seeds, drawn = ob.rototoon.frame_offset, {}, []
@@ -174,11 +174,11 @@ def _group(ob, layers: list[dr.Layer], frames: tuple[int, ...], first: int, last
     return Group(layers, seeds, (low - offset, high - offset), document, os.path.dirname(pattern), mapper, new, keep_first)
 
 
-def _points(layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:
+def _points(ob, layer: dr.Layer, frames: Iterable[int]) -> np.ndarray:
     contents = [_content(layer, frame) for frame in frames]
     rows = [c.point["position"] for c in contents if len(c.sizes)]
     rows = [each[np.isfinite(each).all(1)] for each in rows]
-    return np.concatenate(rows) if rows else np.zeros((0, 3))
+    return np.concatenate(rows) if rows else plane.points(ob, layer.name)
 
 
 def _content(layer: dr.Layer, frame: int) -> st.Content:

@@ -16,6 +16,7 @@ from ..blender import guard, holds
 from ..blender import strokes as st
 from ..blender.placement import Mapper
 from ..common import polygons
+from ..lines import plane
 from . import filling, painted, sheets
 
 DISC = 0.008
@@ -32,10 +33,11 @@ def draw(ob, clicks: Mapping[int, Sequence[Click]], regions: Mapping[int, list[p
     frames."""
     name = ob.rototoon.fills_layer
     drawn, layer = sheets.read(ob, name), filling.layer_of(ob, name)
+    shown = {0: plane.points(ob, name)}
     kept = {frame for frame, sheet in drawn.items() if len(sheet.own) or sheet.blank}
     gp.remove_frames(layer, sorted(drawn.keys() - kept))
     frames = sorted((clicks.keys() | regions.keys()) - kept)
-    mapper, palette = Mapper(ob, frames, {}, [name]), painted.Palette()
+    mapper, palette = Mapper(ob, frames, shown, [name]), painted.Palette()
     held = [frame for frame in frames if mapper.still and _is_held(frame, frames, clicks, regions)]
     frames = [frame for frame in frames if frame not in set(held)]
     gp.make_frames(layer, frames, gp.GENERATED)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import bpy
 import numpy as np
 
-from ..blender import fill_materials, marks, stroke_rows
+from ..blender import fill_materials, marks, materials, stroke_rows
 from ..blender import grease_pencil as gp
 from ..blender import strokes as st
 from ..common import polygons
@@ -62,12 +62,12 @@ class Palette:
         look = int(content.strokes("material_index")[click.stroke]), content.strokes("fill_color")[click.stroke].copy()
         self.looks.setdefault(click.name or tuple(click.colour), look)
 
-    def add_materials(self, ob, materials: Iterable[bpy.types.Material]) -> None:
+    def add_materials(self, ob, given: Iterable[bpy.types.Material]) -> None:
         """Adds those of the object's materials that are given, as they are, by their names."""
-        for material in materials:
-            place = ob.data.materials.find(material.name)
-            if place >= 0:
-                self.looks.setdefault(material.name, (place, np.zeros(4, np.float32)))
+        places = {own: place for place, own in reversed(list(enumerate(materials.of(ob))))}
+        for material in given:
+            if material in places:
+                self.looks.setdefault(material.name, (places[material], np.zeros(4, np.float32)))
 
     def of(self, ob, region: Region) -> tuple[int, np.ndarray]:
         """Material and tint of a region."""

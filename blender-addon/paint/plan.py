@@ -14,6 +14,7 @@ from ..blender.errors import Problem
 from ..blender.placement import Mapper
 from ..common.wording import listed
 from ..lines import plan as lines_plan
+from ..lines import plane
 from . import clicks, painted, recolours, sheets
 
 NOTHING = (
@@ -142,4 +143,4 @@ def mapper_of(ob, name: str, drawn: dict[int, sheets.Sheet], frames) -> Mapper:
     """The mapping of a layer with paint."""
     points = [sheet.content.point["position"] for sheet in drawn.values() if len(sheet.made)]
     points = [each[np.isfinite(each).all(1)] for each in points]
-    return Mapper(ob, frames, {0: np.concatenate(points)} if points else {}, [name])
+    return Mapper(ob, frames, {0: np.concatenate(points) if points else plane.points(ob, name)}, [name])

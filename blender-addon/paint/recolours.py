@@ -20,7 +20,7 @@ import bpy
 import numpy as np
 from rototoon.fills import Hue, Recolour
 
-from ..blender import fill_materials, guard, holds, marks
+from ..blender import fill_materials, guard, holds, marks, materials
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common.wording import listed
@@ -153,7 +153,7 @@ def take(ob, given: Sequence[Recolour]) -> None:
     def material(hue: Hue) -> bpy.types.Material:
         colour = np.array(hue.colour)
         place = fill_materials.material(ob, colour) if hue.name is None else fill_materials.named(ob, hue.name, colour)
-        return ob.data.materials[place]
+        return materials.of(ob)[place]
 
     for own in given:
         ends = [None if frame is None else frame + offset for frame in (own.first, own.last)]
@@ -182,11 +182,10 @@ def _keep(ob, entry: Entry) -> None:
 
 def _slot(ob, material: bpy.types.Material) -> int:
     """Index of a material among the object's. It is appended if it is not there."""
-    for place, own in enumerate(ob.data.materials):
+    for place, own in enumerate(materials.of(ob)):
         if own == material:
             return place
-    ob.data.materials.append(material)
-    return len(ob.data.materials) - 1
+    return materials.append(ob, material)
 
 
 def _masks(ob, sheet: sheets.Sheet, entry: Entry) -> np.ndarray:

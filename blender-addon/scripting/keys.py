@@ -12,7 +12,7 @@ import numpy as np
 from ..blender import grease_pencil as gp
 from ..blender import guard, placement, stroke_rows
 from ..blender.errors import Problem
-from ..capture import closing, contours, correspondence, document, generated, identity
+from ..capture import closing, contours, correspondence, document, generated, identity, stamps
 from ..common.operators import OnDrawing
 from .refusing import need, told
 
@@ -164,7 +164,7 @@ def _new_part(ob: bpy.types.Object, found: contours.Contours, name: str, closed:
 
 def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, material: int) -> None:
     """Adds strokes, points (N, 3) by part, to the drawing on a frame, in the place of earlier strokes of their parts."""
-    layer = gp.find_layer(ob, layer_name)
+    stamp, layer = stamps.settled(ob), gp.find_layer(ob, layer_name)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
     handle, kind = gp.drawings(layer)[frame]
     generated.settle(handle, kind)
@@ -183,6 +183,7 @@ def _draw(ob, layer_name: str, frame: int, polygons, controls, radius: float, ma
         "cyclic": np.array([items[name].closed for name in polygons]),
         "material_index": np.full(len(polygons), material, np.int32),
         gp.PART: numbers,
+        gp.OWNER: np.full(len(polygons), stamp, np.int32),
         gp.MADE: np.zeros(len(polygons), bool),
         gp.CONTROL: np.concatenate([controls[name] for name in polygons]),
     }

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from rototoon.types import Progress
 
-from ..blender import colours, fill_materials, guard
+from ..blender import colours, fill_materials, guard, materials
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common import jobs
@@ -137,7 +137,7 @@ def recolour(ob: bpy.types.Object, old: str, new: str, first: int | None = None,
     """
     need(ob, OnDrawing)
     found = bpy.data.materials.get(new)
-    before = ob.data.materials.get(old)
+    before = next((own for own in materials.of(ob) if own is not None and own.name == old), None)
     if before is None:
         raise Problem(f'"{ob.name}" has no material "{old}"')
     if found is None:

@@ -134,6 +134,8 @@ def _draw() -> None:
     ob = context.object
     if not gp.is_drawing(ob) or context.space_data is None or not context.space_data.overlay.show_overlays:
         return
+    if not ob.visible_get():
+        return
     settings, frame = ob.rototoon, context.scene.frame_current
     for strokes, colour, width in doubtful(ob, frame):
         _draw_lines(strokes, colour, width)

@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 import pytest
 import shots
+from bpy_extras.object_utils import world_to_camera_view
 from conftest import ROOT
 from live_stage import settle
-from mathutils import Matrix
+from mathutils import Matrix, Vector
 
 VERSIONS = ["4.5.15", "5.0.1", "5.2.3"]
 
@@ -114,6 +115,28 @@ def test_pixel_aspect(addon, fake, tmp_path, aspect):
     render.pixel_aspect_x, render.pixel_aspect_y = aspect
     ob = shots.two_keys(addon, tmp_path)
     tracked(addon, ob)
+
+
+@pytest.mark.parametrize("kind", ["image", "clip", "lens"])
+def test_squeezed_footage_fills_the_frame_that_shows_it(addon, tmp_path, kind):
+    """Pixels of two to one, in the scene and in the picture: Blender shows the picture over the whole frame."""
+    ob = shots.set_up(tmp_path)
+    render, entry = bpy.context.scene.render, ob.rototoon.camera.data.background_images[0]
+    render.pixel_aspect_x = 2
+    if kind == "image":
+        entry.image.display_aspect = (2, 1)
+    else:
+        entry.source, entry.clip = "MOVIE_CLIP", bpy.data.movieclips.load(bpy.path.abspath(entry.image.filepath))
+        if kind == "clip":
+            entry.clip.display_aspect = (1, 0.5)
+        else:
+            entry.clip.tracking.camera.pixel_aspect = 2
+    bpy.context.view_layer.update()
+    width, height = shots.SIZE
+    for x, y in ((0, 0), (width, height), (width, 0)):
+        place = shots.mapping(addon, ob).to_layer(np.array([[x, y]], float))[0]
+        seen = world_to_camera_view(bpy.context.scene, ob.rototoon.camera, ob.matrix_world @ Vector(place))
+        assert (seen.x * width, (1 - seen.y) * height) == pytest.approx((x, y), abs=1e-3)
 
 
 def test_frame_step_leaves_out_no_frame(addon, fake, tmp_path):

@@ -83,6 +83,10 @@ def test_background_placement_keeps_shape(addon):
     # One unit of offset is the fitted side; upwards it is measured in picture heights.
     assert at(cameras.Placement("FIT", offset=(0.1, 0.0)), (200, 200)) == pytest.approx([1.0, 0.0])
     assert at(cameras.Placement("FIT", offset=(0.0, 0.1)), (200, 200)) == pytest.approx([0.0, 1.0])
+    # Pixels that are twice as wide as high make it a picture of two to one.
+    assert at(cameras.Placement("FIT", pixel_aspect=2.0), (400, 0)) == pytest.approx([5, 2.5])
+    assert at(cameras.Placement("CROP", pixel_aspect=4.0), (400, 0)) == pytest.approx([10, 2.5])
+    assert at(cameras.Placement("FIT", offset=(0.0, 0.1), pixel_aspect=2.0), (200, 200)) == pytest.approx([0.0, 0.5])
 
 
 def test_reference_image(addon, tmp_path):

@@ -353,6 +353,21 @@ def test_a_reference_image_shows_the_new_footage(addon, library, fake, delivered
     assert away(pixels(addon, ob)[1], before) < 0.5
 
 
+@pytest.mark.parametrize("plane", ["CAMERA", "REFERENCE"])
+def test_squeezed_footage_stays_squeezed(addon, library, fake, delivered, tmp_path, plane):
+    ob = shots.set_up(tmp_path, plane=plane)
+    shower = ob.rototoon.reference or ob.rototoon.camera.data.background_images[0]
+    (shower.data if plane == "REFERENCE" else shower.image).display_aspect = (2, 1)
+    bpy.context.scene.render.pixel_aspect_x = 2
+    shots.draw(addon, ob, 1, [shots.diamond(0), shots.square(0)])
+    bpy.ops.rototoon.match_contours()
+    before = pixels(addon, ob)[1]
+    bpy.ops.rototoon.conform(filepath=delivered, **GIVEN)
+    image = shower.data if plane == "REFERENCE" else shower.image
+    assert image.filepath.endswith("new_1001.png") and tuple(image.display_aspect) == (2, 1)
+    assert away(pixels(addon, ob)[1], before) < 0.5
+
+
 def test_a_movie_is_new_footage_too(addon, film, tmp_path):
     from test_footage import make_movie
 

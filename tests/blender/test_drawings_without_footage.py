@@ -4,7 +4,9 @@ import json
 
 import bpy
 import pytest
+from bpy_extras.object_utils import world_to_camera_view
 from line_stage import said
+from mathutils import Vector
 from test_strokes import add, circle, drawing_object
 from test_tween import figure
 
@@ -53,6 +55,17 @@ def test_drawings_without_footage_are_in_pixels_of_the_camera(addon, tmp_path, m
     wanted = figure()[0][0]
     assert found["drawings"][0]["strokes"][0]["points"][0] == pytest.approx([400 + 100 * wanted[0], 300 - 100 * wanted[1]], abs=0.01)
     assert addon("rototoon").Session.open(str(tmp_path / "none.json")) is not None
+
+
+@pytest.mark.parametrize("aspect", [(4 / 3, 1), (1, 2)])
+def test_drawings_are_in_pixels_of_the_rendered_picture_whatever_their_shape(addon, tmp_path, aspect):
+    scene()
+    bpy.context.scene.render.pixel_aspect_x, bpy.context.scene.render.pixel_aspect_y = aspect
+    ob = drawn(addon)
+    bpy.context.view_layer.update()
+    found = exported(tmp_path / "none.json")["drawings"][0]["strokes"][0]["points"][0]
+    seen = world_to_camera_view(bpy.context.scene, bpy.context.scene.camera, ob.matrix_world @ Vector((figure()[0][0][0], 0, figure()[0][0][1])))
+    assert found == pytest.approx([800 * seen.x, 600 * (1 - seen.y)], abs=0.01)
 
 
 def test_without_a_camera_there_are_no_pixels(addon, tmp_path):

@@ -85,6 +85,26 @@ def test_import_into_the_active_object(addon, tmp_path):
     assert [f.frame_number for f in shots.layer_of(ob).frames] == list(range(9))
 
 
+def test_import_keeps_the_frames_of_an_object_with_the_same_footage(addon, tmp_path, capfd):
+    scene, path = bpy.context.scene, str(tmp_path / "in.json")
+    (tmp_path / "in.json").write_text(json.dumps(project(tmp_path)))
+    scene.frame_start = 101
+    bpy.ops.rototoon.import_document(filepath=path)
+    ob = bpy.context.object
+    before = [f.frame_number for f in shots.layer_of(ob).frames]
+    # Handles before the footage.
+    scene.frame_start, ob.rototoon.movie = 93, str(tmp_path / "shot.mov")
+    capfd.readouterr()
+    bpy.ops.rototoon.import_document(filepath=path, into="ACTIVE")
+    assert ob.rototoon.frame_offset == 101 and [f.frame_number for f in shots.layer_of(ob).frames] == before
+    assert ob.rototoon.movie == str(tmp_path / "shot.mov") and "other footage" not in capfd.readouterr().out
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "in.json").write_text(json.dumps(project(tmp_path / "other")))
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "other" / "in.json"), into="ACTIVE")
+    assert ob.rototoon.frame_offset == 93 and not ob.rototoon.movie
+    assert f'"{ob.name}" has other footage now: shot_%03d.png, with picture 0 on frame 93' in capfd.readouterr().out
+
+
 @pytest.mark.parametrize("lacking", ["camera", "size", "view"])
 def test_an_import_that_has_no_place_leaves_the_object(addon, tmp_path, lacking):
     ob = shots.two_keys(addon, tmp_path)

@@ -35,6 +35,13 @@ def test_the_line_of_a_filled_material_is_made_once(addon, inked):
     assert other.data.materials[line_material(other, 0)] == made
 
 
+def test_the_line_is_that_of_the_material_that_the_object_shows(addon, inked):
+    slot = inked.material_slots[0]
+    slot.link, slot.material = "OBJECT", material("Red", fill=True)
+    made = inked.data.materials[addon("blender.strokes").line_material(inked, 0)]
+    assert made.name == "Red Line" and inked.data.materials[0].name == "Ink"
+
+
 @pytest.mark.parametrize("in_slot", [False, True])
 def test_an_artists_material_of_that_name_keeps_its_fill(addon, inked, in_slot):
     own = material("Ink Line", fill=True)

@@ -178,3 +178,29 @@ def test_strokes_of_an_object_without_materials_keep_their_look(addon, painted, 
     contours = attribute(addon, bare, "Contours", 1, "material_index")
     assert [bare.data.materials[i] for i in contours.tolist()] == [None]
     assert set(by_material(addon, bare)) == set(document["palette"])
+
+
+@pytest.mark.every_version
+def test_materials_that_are_linked_to_the_object_are_its_colours(addon, painted, tmp_path):  # noqa: F811
+    """As for another dress of a character: the slot has a material of the object, and the data has the old one still."""
+    coat = bpy.data.materials.new("Coat")
+    bpy.data.materials.create_gpencil_data(coat)
+    coat.grease_pencil.fill_color, coat.grease_pencil.show_fill = (1.0, 0.0, 0.0, 1.0), True
+    index = painted.data.materials.find("Paint edc29e")
+    slot = painted.material_slots[index]
+    slot.link, slot.material = "OBJECT", coat
+
+    def bodies():
+        return [addon("paint.bucket").taken_at(painted, frame, places(frame)[1][0]) for frame in (1, 6)]
+
+    assert bodies() == [(pytest.approx((1, 0, 0)), "Coat")] * 2
+    path, count = tmp_path / "coat.json", len(painted.data.materials)
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    assert json.loads(path.read_text())["palette"]["Coat"] == [1, 0, 0]
+    assert bpy.ops.rototoon.fill_drawings() == {"FINISHED"}
+    assert bodies() == [(pytest.approx((1, 0, 0)), "Coat")] * 2
+    assert len(painted.data.materials) == count and painted.data.materials[index].name == "Paint edc29e"
+    done = addon("scripting").recolour(painted, "Coat", "Paint edc29e", first=4)
+    assert done.frames == (4, 5, 6)
+    assert [name for _, name in bodies()] == ["Coat", "Paint edc29e"]
+    assert painted.material_slots[index].material == coat

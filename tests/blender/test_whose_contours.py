@@ -283,7 +283,87 @@ def test_a_copy_of_the_drawings_with_the_list_of_parts_keeps_its_parts(addon, fa
         item.number, item.name, item.closed, item.depth, item.count = part.number, part.name, part.closed, part.depth, part.count
     bpy.ops.rototoon.track()
     assert keys(addon, copy) == {"Part 1": [1, 9], "Part 2": [1, 9]}
-    assert copy.rototoon.stamp == ob.rototoon.stamp
+    assert copy.rototoon.stamp != ob.rototoon.stamp
+
+
+def copy_of(ob):
+    """A copy of an object with drawings of its own, as Duplicate makes it."""
+    copy = ob.copy()
+    copy.data = ob.data.copy()
+    bpy.context.collection.objects.link(copy)
+    return copy
+
+
+def new_key(addon, ob, name, shape, by):
+    """A part of its own on frame 1, by a script or drawn and matched."""
+    if by == "script":
+        addon("scripting").set_key(ob, 1, {name: shape})
+        return
+    made_active(ob)
+    shots.draw(addon, ob, 1, [shape])
+    bpy.ops.rototoon.match_contours()
+    ob.rototoon.parts[-1].name = name
+
+
+@pytest.mark.parametrize("by", ["script", "artist"])
+@pytest.mark.parametrize("copy_first", [False, True])
+def test_a_contour_of_a_copy_is_a_new_one(addon, fake, tmp_path, by, copy_first):
+    """Both get a third part after the copy, with the same number."""
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    other = copy_of(ob)
+    bag, hat = shots.square(0) * 0.5, np.array([[130.0, 5], [150, 5], [150, 10], [130, 12], [120, 9]])
+    for each in (other, ob) if copy_first else (ob, other):
+        new_key(addon, each, *(("bag", bag) if each == ob else ("hat", hat)), by)
+    made_active(other)
+    in_edit_mode(addon, other, 1, 3, bpy.ops.grease_pencil.copy)
+    made_active(ob)
+    ob.data.layers.active = shots.layer_of(ob)
+    bpy.context.scene.frame_set(9)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.grease_pencil.paste()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.ops.rototoon.match_contours()
+    first = {"Part 1": [1, 9], "Part 2": [1, 9]}
+    assert keys(addon, ob) == {**first, "bag": [1], "Part 4": [9]}
+    assert keys(addon, other) == {**first, "hat": [1]}
+    for each in (ob, other):
+        made_active(each)
+        bpy.ops.rototoon.track()
+        assert [tracked for _, _, tracked in counted(addon, each).values()][:2] == [list(range(2, 9))] * 2
+
+
+def test_a_copy_with_a_locked_layer_keeps_its_parts(addon, fake, tmp_path):
+    ob = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.track()
+    other = copy_of(ob)
+    made_active(other)
+    shots.layer_of(other).lock = True
+    addon("scripting").set_key(other, 1, {"hat": shots.square(0) * 0.5}, layer="Contours.hats")
+    assert keys(addon, other) == {"Part 1": [1, 9], "Part 2": [1, 9], "hat": [1]}
+    shots.layer_of(other).lock = False
+    bpy.ops.rototoon.track()
+    assert keys(addon, other) == {"Part 1": [1, 9], "Part 2": [1, 9], "hat": [1]} and other.rototoon.stamp != ob.rototoon.stamp
+
+
+def test_a_contour_of_an_imported_document_is_a_new_one_elsewhere(addon, fake, tmp_path):
+    other = shots.two_keys(addon, tmp_path)
+    bpy.ops.rototoon.export_document(filepath=str(tmp_path / "shot.json"))
+    bpy.ops.rototoon.import_document(filepath=str(tmp_path / "shot.json"))
+    imported, ob = bpy.context.object, shots.two_keys(addon, tmp_path / "other")
+    assert imported not in (ob, other)
+    bpy.ops.rototoon.track()
+    made_active(imported)
+    in_edit_mode(addon, imported, 1, 1, bpy.ops.grease_pencil.copy)
+    made_active(ob)
+    ob.data.layers.active = shots.layer_of(ob)
+    bpy.context.scene.frame_set(5)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.grease_pencil.paste()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    last_moved(addon, ob, 5, (20.0, -30.0))
+    bpy.ops.rototoon.match_contours()
+    assert keys(addon, ob) == {"Part 1": [1, 9], "Part 2": [1, 9], "Part 3": [5]}
 
 
 def test_a_joined_object_brings_its_keys_as_new_parts(addon, fake, tmp_path):

@@ -50,7 +50,8 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
     )
     keep_numbers: bpy.props.BoolProperty(
         name="Keep Frame Numbers",
-        description="Show picture n on frame n, instead of the first picture on the scene's first frame",
+        description="Show picture n on frame n. Otherwise an object with the same footage keeps its frames, and the first picture of other "
+        "footage is on the scene's first frame",
         default=False,
     )
     match_scene: bpy.props.BoolProperty(
@@ -79,14 +80,13 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         drawn.checked(project)
         filled.read(project)
         filled.recolours_of(project)
-        shot = self._shot(context, project["footage"], os.path.dirname(os.path.abspath(path)))
-        if self.into == "ACTIVE":
-            ob = context.object
-            if ob is None or ob.type != "GREASEPENCIL":
-                raise Problem("Make a Grease Pencil object active, or import into a new one")
+        ob = self._given(context)
+        shot = self._shot(context, ob, project["footage"], os.path.dirname(os.path.abspath(path)))
+        if ob is not None:
             importing.need_open(ob, project)
             drawn.need_open(ob, project)
             filled.need_open(ob, project)
+            self._tell_of_other_footage(ob, shot)
             had, where = looks.of(ob), ""
             with stage.tried(ob, shot):
                 context.view_layer.update()
@@ -133,14 +133,31 @@ class ROTOTOON_OT_import_document(Guarded, bpy.types.Operator):
         parts = [counted(len(ob.rototoon.parts), "part")] if len(ob.rototoon.parts) or not found else []
         return parts + found
 
-    def _shot(self, context, shot: dict, folder: str) -> stage.Shot:
+    def _given(self, context) -> bpy.types.Object | None:
+        """The object that gets the contours; `None` for a new one."""
+        if self.into == "NEW":
+            return None
+        if context.object is None or context.object.type != "GREASEPENCIL":
+            raise Problem("Make a Grease Pencil object active, or import into a new one")
+        return context.object
+
+    def _tell_of_other_footage(self, ob, shot: stage.Shot) -> None:
+        if ob.rototoon.pattern and footage.absolute(ob, ob.rototoon.pattern) != shot.pattern:
+            name = os.path.basename(shot.pattern)
+            self.warn(f'"{ob.name}" has other footage now: {name}, with picture {shot.first} on frame {shot.frame_of_first}')
+
+    def _shot(self, context, ob, shot: dict, folder: str) -> stage.Shot:
         pattern = os.path.normpath(os.path.join(folder, shot["pattern"]))
         first = footage.picture(pattern, shot["first"])
         if not os.path.isfile(first):
             raise Problem(f"No picture {first}: the document's footage is missing")
-        start = shot["first"] if self.keep_numbers else context.scene.frame_start
+        start, movie = context.scene.frame_start, ""
+        if ob is not None and ob.rototoon.pattern and footage.absolute(ob, ob.rototoon.pattern) == pattern:
+            start = shot["first"] + ob.rototoon.frame_offset
+            movie = footage.absolute(ob, ob.rototoon.movie) if ob.rototoon.movie else ""
+        start = shot["first"] if self.keep_numbers else start
         fps = float(shot.get("fps", 24.0))
-        return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start, hold_gaps="gaps" in shot)
+        return stage.Shot(pattern, shot["first"], shot["last"], shot["width"], shot["height"], fps, start, movie, hold_gaps="gaps" in shot)
 
 
 CLASSES = (ROTOTOON_OT_import_document,)

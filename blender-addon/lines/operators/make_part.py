@@ -112,10 +112,12 @@ def _part_of(found: contours.Contours, layer: str, frame: int, index: int) -> co
 
 
 def _draw(ob, frame: int, contour: np.ndarray) -> int:
-    """Adds the contour to the layer of the contours, as if the artist had drawn it. Returns its index in the drawing."""
+    """Adds the contour to the layer of the contours, on the plane of those that are there, as if the artist had drawn it. Returns its index in the
+    drawing."""
     name = ob.rototoon.contours_layer
     layer = gp.layer(ob, name)
-    mapping = placement.Mapper(ob, [frame], {}, [name]).at(0, frame)
+    found = contours.read(ob)
+    mapping = document.mapper_of(ob, found, frame).at(found.layer_names.index(name), frame)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
     rows = stroke_rows.Rows(np.array([len(contour)], np.int32))
     rows.values = {

@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 
 from ...blender import camera as cameras
-from ...blender import footage, guard, preferences
+from ...blender import footage, guard, preferences, world
 from ...blender import grease_pencil as gp
 from ...blender.errors import Problem
 from ...capture.operators.footage_from_reference import reference_image
@@ -77,9 +77,9 @@ class _Still:
 
     def __init__(self, ob, empty, name: str, size: tuple[int, int]):
         matrix = cameras.need_size(ob, cameras.layer_to_world(ob, gp.find_layer(ob, name)))
-        inverse, world = np.linalg.inv(matrix), np.array(empty.matrix_world, np.float64)
-        normal = world[:3, 2] / np.linalg.norm(world[:3, 2])
-        point = inverse @ np.append(world[:3, 3] + LIFT * normal, 1.0)
+        inverse, board = np.linalg.inv(matrix), np.array(world.matrix_of(empty), np.float64)
+        normal = board[:3, 2] / np.linalg.norm(board[:3, 2])
+        point = inverse @ np.append(board[:3, 3] + LIFT * normal, 1.0)
         # A normal goes with the transposed matrix.
         own = matrix[:3, :3].T @ normal
         self._mapping = cameras.Mapping(cameras.reference_view(empty, *size), matrix, (point[:3], own / np.linalg.norm(own)), cameras.radius_of(ob))

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...blender import fill_materials, guard
+from ...blender import fill_materials, guard, materials
 from ...blender.errors import Problem
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted, listed
@@ -80,7 +80,7 @@ def _old(ob, name: str) -> bpy.types.Material:
     """The object's material of a name, or the active one."""
     if not name and ob.active_material is not None:
         return ob.active_material
-    found = next((material for material in ob.data.materials if material is not None and material.name == name), None)
+    found = next((material for material in materials.of(ob) if material is not None and material.name == name), None)
     if found is None:
         raise Problem(f'"{ob.name}" has no material "{name}"' if name else "Choose the material that becomes another one")
     return found
@@ -93,7 +93,8 @@ def _new(ob, name: str, colour) -> bpy.types.Material:
         if found is None:
             raise Problem(f'There is no material "{name}"')
         return found
-    return ob.data.materials[fill_materials.material(ob, colour)]
+    place = fill_materials.material(ob, colour)
+    return materials.of(ob)[place]
 
 
 CLASSES = (ROTOTOON_OT_recolour,)

@@ -67,9 +67,16 @@ class ROTOTOON_OT_reshape_picture(Manner, Reshaping, bpy.types.Operator):
         shapes = len(made.data.shape_keys.key_blocks) - 1
         self.tell(context, work.result, shapes)
         if self.hide and self._source.ob is not None:
-            self._source.ob.hide_render = self._source.ob.hide_viewport = True
+            _hide(self._source.ob)
         mirrored = mirroring(work.result.looks, work.result.mirrored)
         return f'{len(self._pieces)} pieces, {shapes} frames after frame {self._drawing.frame}: "{made.name}"{mirrored}'
+
+
+def _hide(picture) -> None:
+    """Hides a picture with the eye: disabled in viewports it would not be evaluated any more, and drawings may be placed by it."""
+    if picture.visible_get():
+        picture.hide_set(True)
+    picture.hide_render = True
 
 
 CLASSES = (ROTOTOON_OT_reshape_picture,)
