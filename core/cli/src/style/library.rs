@@ -94,6 +94,10 @@ fn add(library: &mut Library, given: &ArgMatches) -> Result<(), Failure> {
     for e in &added.replaced {
         line("note", &format!("replaced {:?} by {:?} ({})", e.motion, e.character, e.file));
     }
+    if added.unlocked {
+        let folder = arguments::path(given, "folder").display();
+        line("note", &format!("{folder}: the disk knows no locks; let only one program change the library at a time"));
+    }
     if let Some(path) = added.aside {
         line("note", &format!("the damaged index is kept as {}", path.display()));
     }

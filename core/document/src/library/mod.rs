@@ -3,7 +3,7 @@
 //! The index `library.json` lists `{"file", "character", "motion", "frames", "fps", "source"}` for each clip. The file
 //! of a clip is a file of clips ([`super::clips`]) with one clip. The index makes searching fast; the files are
 //! authoritative. Clip files that the index does not list are found as well, so a file may simply be copied into the
-//! folder.
+//! folder. Hidden files are no clips.
 //!
 //! **Damage.** A file that is damaged, missing or of a later version does not affect the others. It is reported as a
 //! [`Trouble`], and the rest is used. Without a usable index the clip files of the folder are read instead.
@@ -155,7 +155,7 @@ impl Library {
         let known: BTreeSet<&str> = self.index.entries.iter().map(|entry| entry.file.as_str()).collect();
         let mut names: Vec<String> = listed
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .filter(|name| index::is_clip_file(name) && !known.contains(name.as_str()))
+            .filter(|name| index::is_clip_file(name) && !is_hidden(name) && !known.contains(name.as_str()))
             .collect();
         names.sort();
         let paths: Vec<PathBuf> = names.iter().map(|name| self.folder.join(name)).collect();
@@ -188,6 +188,11 @@ impl Library {
             }
         }
     }
+}
+
+/// Whether systems hide a file of this name. A Mac keeps more about a file `a` in `._a` on disks of other systems.
+fn is_hidden(name: &str) -> bool {
+    name.starts_with('.')
 }
 
 fn one_clip(path: &Path) -> Result<(Clip, f64), Trouble> {

@@ -355,3 +355,24 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     found.sort();
     found.into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect()
 }
+
+#[cfg(unix)]
+#[test]
+fn everybody_who_may_write_into_the_folder_may_add() {
+    use std::os::unix::fs::PermissionsExt;
+    let (folder, mut library) = filled();
+    let lock = folder.path().join("clips").join("library.lock");
+    assert_eq!(fs::metadata(&lock).unwrap().permissions().mode() & 0o777, 0o666, "whatever the mask is");
+    // Another user made the file, with an older version.
+    fs::set_permissions(&lock, fs::Permissions::from_mode(0o444)).unwrap();
+    put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap();
+}
+
+#[test]
+fn files_that_other_systems_hide_are_no_clips() {
+    let (folder, _) = filled();
+    let folder = folder.path().join("clips");
+    fs::write(folder.join("._ann-walk.clip.json"), b"\0\x05\x16\x07").unwrap();
+    let library = Library::open(&folder);
+    assert_eq!((library.troubles(), library.entries().len()), (&[][..], 3));
+}
