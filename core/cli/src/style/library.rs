@@ -63,11 +63,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return add(&mut library, given);
     }
     // The index alone does not tell which files are there and whole.
-    let asked = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
-    let (found, troubles) = library.checked(asked);
-    troubles.iter().for_each(|trouble| line("warning", &trouble.to_string()));
+    let (character, motion) = (arguments::choice(given, "character"), arguments::choice(given, "motion"));
+    let found = library.checked(|entry| entry.has(character, motion));
+    found.troubles().for_each(|trouble| line("warning", &trouble.to_string()));
     let mut out = std::io::stdout().lock();
-    for (e, clip) in found {
+    for (e, clip) in found.clips {
         if let Some(guesses) = pipeline::guesses(&clip) {
             let file = folder.join(&e.file);
             line("note", &format!("{}: guessed, not captured: {guesses}", file.display()));

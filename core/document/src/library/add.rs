@@ -6,13 +6,13 @@
 //! lost; an entry whose file is damaged may be one.
 
 use super::index::ENDING;
-use super::{AddError, Entry, INDEX, Index, Library, Taken, Trouble, one_clip};
+use super::{AddError, Content, Entry, INDEX, Index, Library, Taken, Trouble};
 use crate::clips::Clips;
 use crate::output::{WriteError, write_whole};
 use rototoon_base::file;
 use rototoon_base::scene::Clip;
 use serde_json::Map;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -77,6 +77,7 @@ impl Library {
         // Another process may have added clips since this library was opened.
         *self = Self::open(&folder);
         changeable(&self.index, folder.join(INDEX))?;
+        self.correct();
         let clips = || added.iter().flat_map(|one| one.clips.clips.iter().map(move |clip| (clip, one)));
         once(clips().map(|(clip, _)| clip))?;
         let replaced: Vec<Entry> = clips().filter_map(|(clip, _)| self.existing(clip)).cloned().collect();
@@ -92,14 +93,26 @@ impl Library {
         Ok(Added { replaced, aside, unlocked: lock.is_none() })
     }
 
-    /// The entry of a clip of the same character and motion whose file is there.
+    /// Brings the entries to what their files say: names may have been changed in a file. An entry whose file has the clip of another
+    /// one stays as it is, with the fields that others have added to it.
+    fn correct(&mut self) {
+        let found = self.read_files(self.index.entries.iter()).clips;
+        let mut found: BTreeMap<String, Entry> =
+            found.into_iter().map(|(entry, _)| (entry.file.clone(), entry)).collect();
+        for entry in &mut self.index.entries {
+            *entry = found.remove(&entry.file).unwrap_or_else(|| entry.clone());
+        }
+    }
+
+    /// The entry of a clip of the same character and motion whose file has it, or may have it.
     fn existing(&self, clip: &Clip) -> Option<&Entry> {
-        self.index.entries.iter().find(|entry| of_same(entry, clip) && is_there(&self.folder.join(&entry.file)))
+        let (k, content) = self.entry_of(clip)?;
+        (content != Content::Other).then(|| &self.index.entries[k])
     }
 
     /// Writes the file of a clip, and its entry in memory.
     fn put(&mut self, clip: &Clip, fps: f64, source: &str) -> Result<(), WriteError> {
-        let known = self.index.entries.iter().position(|entry| of_same(entry, clip));
+        let known = self.entry_of(clip).map(|(k, _)| k);
         let own = known.map(|k| self.index.entries[k].file.clone()).filter(|file| self.may_replace(file, clip));
         let entry = Entry {
             file: own.unwrap_or_else(|| self.free_name(clip)),
@@ -120,10 +133,7 @@ impl Library {
     /// Whether a file has a clip of the same character and motion, or does not exist.
     fn may_replace(&self, file: &str, clip: &Clip) -> bool {
         let path = self.folder.join(file);
-        match one_clip(&path) {
-            Ok((found, _)) => found.character == clip.character && found.motion == clip.motion,
-            Err(_) => !is_there(&path),
-        }
+        !is_there(&path) || Content::of(&path, clip) == Content::Same
     }
 
     /// A free file name made of letters and digits of both labels, with a number if necessary.
@@ -135,10 +145,6 @@ impl Library {
         let numbered = (2..).map(|n| format!("{stem}-{n}{ENDING}"));
         std::iter::once(format!("{stem}{ENDING}")).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
     }
-}
-
-fn of_same(entry: &Entry, clip: &Clip) -> bool {
-    entry.character == clip.character && entry.motion == clip.motion
 }
 
 /// Refuses clips of which one would replace another.
