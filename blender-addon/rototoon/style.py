@@ -229,9 +229,18 @@ def add_files_to_library(
     return replaced
 
 
-def read_library(folder: str, character: str = "", motion: str = "", read: bool = True) -> Found:
-    """The clips of a library whose character and motion contain these texts, at the frame rate that most of them have. With `read`
-    false, only the index is read.
+def read_library(
+    folder: str,
+    character: str = "",
+    motion: str = "",
+    read: bool = True,
+    exact: bool = False,
+    rate_of: tuple[str, str] | None = None,
+) -> Found:
+    """The clips of a library whose character and motion contain these texts, at one frame rate: that of the clip `rate_of`, a
+    character and a motion, else that which most of the clips have.
+
+    With `exact` the texts are the names themselves; an empty one is any name. With `read` false, no clips are returned.
     """
-    wanted = {"character": character, "motion": motion, "read": read}
+    wanted = {"character": character, "motion": motion, "read": read, "exact": exact, "rate_of": rate_of}
     return Found(**json.loads(handles.take(handles.Text, "rototoon_library_find", *text(folder), *as_json(wanted))))
