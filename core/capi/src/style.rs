@@ -143,7 +143,7 @@ pub fn import(text: &str, json: &str) -> Result<String, Failure> {
     }
     let made = bvh::seen(text, &given.read()?).map_err(Failure::error)?;
     let clips = Clips { clips: vec![Clip::new(given.character, given.motion, made.postures)], fps: made.fps };
-    Ok(format!(r#"{{"clips": {}, "yaw": {}}}"#, clips.text().trim_end(), made.yaw))
+    Ok(format!(r#"{{"clips": {}, "yaw": {}, "notes": {}}}"#, clips.text().trim_end(), made.yaw, json!(made.notes)))
 }
 
 #[derive(Deserialize)]
