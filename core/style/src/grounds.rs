@@ -24,6 +24,8 @@ pub struct Grounds {
     pub sides: Sides,
     /// How sure it is, where the library tells.
     pub sure: Option<Sure>,
+    /// What is said of clips from shots of another framing.
+    framings: Vec<String>,
 }
 
 impl Grounds {
@@ -36,6 +38,7 @@ impl Grounds {
             how: (options.preset, options.strength, options.keep_lengths),
             sides,
             sure: None,
+            framings: grid.characters.iter().zip(&grid.framings).flat_map(|(name, own)| own.notes(name)).collect(),
         }
     }
 
@@ -55,7 +58,8 @@ impl Grounds {
 
     /// What a person should know about the result, a sentence each.
     pub fn notes(&self) -> Vec<String> {
-        self.sides.notes().into_iter().chain(self.of_style()).collect()
+        let first = self.sides.notes().into_iter().chain(self.framings.iter().cloned());
+        first.chain(self.of_style()).collect()
     }
 
     /// What there is to say about what is known of the style.
