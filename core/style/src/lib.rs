@@ -362,7 +362,9 @@ pub fn translate_and_judge(
         clip.deviation = holds.held(&holds.drawings(&clip.deviation));
     }
     if options.pace == Pace::Style {
-        align::change_pace(&mut clip, align::pace(clips, request));
+        let pace = align::pace(clips, request);
+        align::change_pace(&mut clip, pace.ratio);
+        grounds.pace = Some(pace);
     }
     progress.report(STEP, 1.0)?;
     Ok((clip, grounds))
