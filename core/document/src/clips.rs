@@ -257,7 +257,22 @@ impl Reader<'_> {
             .map(|(frame, posture)| self.posture(&template, posture, &format!("{place}, frame {frame}")))
             .collect::<Result<_, _>>()?;
         let guessed = self.guessed(&template, value, (&place, frames.len()))?;
-        Ok(Clip { guessed, ..Clip::of(template, character, motion, postures) })
+        let deviation = self.deviation(&template, value, (&place, frames.len()))?;
+        Ok(Clip { guessed, deviation, ..Clip::of(template, character, motion, postures) })
+    }
+
+    /// The standard deviations of a clip that was made; none of one that was captured.
+    fn deviation(
+        &self,
+        template: &Template,
+        clip: &Value,
+        (place, frames): (&str, usize),
+    ) -> Result<Vec<Vec<f64>>, ClipsError> {
+        let Some(value) = clip.get("deviation") else { return Ok(Vec::new()) };
+        let read: Option<Vec<Vec<f64>>> = serde_json::from_value(value.clone()).ok();
+        let read = read.filter(|all| all.is_empty() || deviates(all, frames, template.len()));
+        let expected = format!("{} numbers from 0 for each of {frames} frames", template.len());
+        read.ok_or_else(|| self.wrong(format!("{place}.deviation"), value, &expected))
     }
 
     /// The times on which key points of a clip were filled in.
@@ -311,6 +326,12 @@ impl Reader<'_> {
         }
         Ok(posture)
     }
+}
+
+/// Whether deviations are those of a clip: for each frame and key point a number from 0.
+pub(super) fn deviates(deviation: &[Vec<f64>], frames: usize, points: usize) -> bool {
+    let row = |row: &Vec<f64>| row.len() == points && row.iter().all(|s| *s >= 0.0 && s.is_finite());
+    deviation.len() == frames && deviation.iter().all(row)
 }
 
 /// Whether times are those of a clip with a number of frames: each has its ends in order, and they rise.
@@ -384,6 +405,24 @@ mod tests {
             assert!(told.starts_with(&format!("{place}.head: found ")) && told.ends_with(times), "{told}");
         }
         assert_eq!(error(&with("7")), format!("{place}: found 7, expected an object with times by key point"));
+    }
+
+    #[test]
+    fn deviations_are_read_again_and_wrong_ones_are_named() {
+        let with = |deviation: &str| {
+            file(&format!("[{}]", posture())).replace("\"points\"", &format!("\"deviation\": {deviation}, \"points\""))
+        };
+        let row = format!("[{}]", vec!["0.25"; COUNT].join(","));
+        let clips = Clips::parse(&with(&format!("[{row}]")), "f").unwrap();
+        assert_eq!(clips.clips[0].deviation, [[0.25; COUNT]]);
+        assert_eq!(Clips::parse(&clips.text(), "f").unwrap(), clips);
+        assert_eq!(Clips::parse_by_value(&clips.text(), "f").unwrap(), clips);
+        assert!(Clips::parse(&with("[]"), "f").unwrap().clips[0].deviation.is_empty());
+        for wrong in ["7", "[[0.25]]", &format!("[{row}, {row}]"), &format!("[{}]", row.replacen("0.25", "-1", 1))] {
+            let told = error(&with(wrong));
+            assert!(told.starts_with(r#"f.json: clips[0] ("a", "walk").deviation: found "#), "{told}");
+            assert!(told.ends_with("expected 17 numbers from 0 for each of 1 frames"), "{told}");
+        }
     }
 
     #[test]

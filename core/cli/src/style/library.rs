@@ -68,8 +68,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     found.troubles().for_each(|trouble| line("warning", &trouble.to_string()));
     let mut out = std::io::stdout().lock();
     for (e, clip) in found.clips {
+        let file = folder.join(&e.file);
+        if !clip.deviation.is_empty() {
+            line("note", &format!("{}: made by translation, not captured", file.display()));
+        }
         if let Some(guesses) = pipeline::guesses(&clip) {
-            let file = folder.join(&e.file);
             line("note", &format!("{}: guessed, not captured: {guesses}", file.display()));
         }
         // A closed standard output, such as of `head`, is no error.

@@ -432,4 +432,11 @@ fn a_clip_file_copied_over_another_is_named_and_the_others_are_used() {
     let list = String::from_utf8_lossy(&listed.stdout);
     assert_eq!(list.lines().map(|line| line.split('\t').nth(1).unwrap()).collect::<Vec<_>>(), ["walk", "run"]);
     assert!(String::from_utf8_lossy(&listed.stderr).contains(said));
+    // A translated clip stays one in a library.
+    assert!(rototoon(&["style", "library", "add", to, out.to_str().unwrap(), "--replace"]).status.success());
+    let kept = std::fs::read_to_string(shelf.join("old-run.clip.json")).unwrap();
+    assert!(kept.contains("\"deviation\""));
+    let listed = rototoon(&["style", "library", "list", to, "--character", "old"]);
+    let said = String::from_utf8_lossy(&listed.stderr);
+    assert!(said.contains("old-run.clip.json: made by translation, not captured") && said.lines().count() == 2, "{said}");
 }
