@@ -39,7 +39,7 @@ pub(super) fn store(
         set_tracks(part, frames.iter().copied().zip(of_frames.iter().cloned()).collect());
     }
     for (part, depths) in parts.iter_mut().zip(depths) {
-        part.depth = depths.first().copied().unwrap_or(part.depth);
+        // The part's own depth stays the artist's, from which the drawing may be reshaped again.
         let other = frames.iter().zip(depths).filter(|(_, depth)| **depth != part.depth);
         part.depths = other.map(|(frame, depth)| (*frame, *depth)).collect();
     }

@@ -151,6 +151,14 @@ fn marks_order_parts_by_frame() {
         assert_eq!(depth(3, frame) > depth(2, frame), frame < 2);
         assert!(depth(0, frame) > depth(2, frame));
     }
+    // The order of the artist stays, so the result may be reshaped again, also without the marks.
+    let orders = |mut document: Document| {
+        reshape(&mut document, &job(&motion), &Silent).unwrap();
+        document.scene.parts.into_iter().map(|part| (part.depth, part.depths)).collect::<Vec<_>>()
+    };
+    assert_eq!(orders(read), document.scene.parts.iter().map(|p| (p.depth, p.depths.clone())).collect::<Vec<_>>());
+    let unmarked = Document::parse(&text.replace("depth_marks", "no_marks"), "unmarked").unwrap();
+    assert_eq!(orders(unmarked), orders(figure("")));
     let contrary = format!(r#", "depth_marks": [{}, {}]"#, mark("arm", "body", ""), mark("body", "arm", ""));
     let error = reshape(&mut figure(&contrary), &job(&motion), &Silent).unwrap_err().to_string();
     assert!(error.starts_with("frame 0: found marks that contradict each other: depth_marks["), "{error}");
