@@ -438,5 +438,8 @@ fn a_clip_file_copied_over_another_is_named_and_the_others_are_used() {
     assert!(kept.contains("\"deviation\""));
     let listed = rototoon(&["style", "library", "list", to, "--character", "old"]);
     let said = String::from_utf8_lossy(&listed.stderr);
-    assert!(said.contains("old-run.clip.json: made by translation, not captured") && said.lines().count() == 2, "{said}");
+    assert!(
+        said.contains("old-run.clip.json: made by translation, not captured") && said.lines().count() == 2,
+        "{said}"
+    );
 }
