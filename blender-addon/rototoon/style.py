@@ -81,6 +81,18 @@ class Translated:
 
 
 @dataclass(frozen=True)
+class Imported:
+    """A clip of motion capture."""
+
+    clips: dict[str, Any]
+    """A file of clips that contains this clip."""
+    yaw: float
+    """The angle about the vertical axis from which it is seen, in degrees."""
+    notes: list[str]
+    """What a person should know about it: joints that were not taken by their names."""
+
+
+@dataclass(frozen=True)
 class Stance:
     """How the body of a clip stands."""
 
@@ -165,9 +177,14 @@ def import_motion(motion: str, character: str, name: str, **options: Any) -> tup
     (``"auto"``, ``"y"`` or ``"z"``), `joints` (for each key point its joint or joints), `way` (whether the pelvis travels), `first`
     and `last` frame, counted from 0, `fps`.
     """
+    made = import_and_note(motion, character, name, **options)
+    return made.clips, made.yaw
+
+
+def import_and_note(motion: str, character: str, name: str, **options: Any) -> Imported:
+    """Does the same as `import_motion`, with the same options, and returns notes as well."""
     given = {"character": character, "motion": name, **options}
-    made = json.loads(handles.take(handles.Text, "rototoon_import_motion", *text(motion), *as_json(given)))
-    return made["clips"], made["yaw"]
+    return Imported(**json.loads(handles.take(handles.Text, "rototoon_import_motion", *text(motion), *as_json(given))))
 
 
 def translate_clip(
@@ -229,9 +246,18 @@ def add_files_to_library(
     return replaced
 
 
-def read_library(folder: str, character: str = "", motion: str = "", read: bool = True) -> Found:
-    """The clips of a library whose character and motion contain these texts, at the frame rate that most of them have. With `read`
-    false, only the index is read.
+def read_library(
+    folder: str,
+    character: str = "",
+    motion: str = "",
+    read: bool = True,
+    exact: bool = False,
+    rate_of: tuple[str, str] | None = None,
+) -> Found:
+    """The clips of a library whose character and motion contain these texts, at one frame rate: that of the clip `rate_of`, a
+    character and a motion, else that which most of the clips have.
+
+    With `exact` the texts are the names themselves; an empty one is any name. With `read` false, no clips are returned.
     """
-    wanted = {"character": character, "motion": motion, "read": read}
+    wanted = {"character": character, "motion": motion, "read": read, "exact": exact, "rate_of": rate_of}
     return Found(**json.loads(handles.take(handles.Text, "rototoon_library_find", *text(folder), *as_json(wanted))))

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from rototoon.style import KEY_POINTS, Skeleton, add_files_to_library, read_library, skeleton_of
+from rototoon.style import KEY_POINTS, Found, Skeleton, add_files_to_library, read_library, skeleton_of
 
 from ..blender.errors import Problem
 from ..blender.preferences import preferences
@@ -33,7 +33,9 @@ class Row:
     trouble: str = ""
     """Why the clip cannot be used; empty if it can."""
     postures: np.ndarray = field(default_factory=lambda: np.zeros((0, 17, 2)))
-    """Key points (frames, key points of the body, 2)."""
+    """Key points (frames, key points of the body, 2), at the rate of the library."""
+    rate: float = 25.0
+    """Frames per second of the postures; `fps` is that of the file."""
     body: Skeleton | None = None
     """The body of the clip; `None` if the clip cannot be used."""
 
@@ -85,7 +87,9 @@ def read(folder: str) -> Shelf:
     file = found.clips or {}
     clips = {(clip["character"], clip["motion"]): clip | {"skeleton": skeleton_of(file, clip)} for clip in file.get("clips", [])}
     troubles = list(found.troubles)
-    rows = [_row(entry, clips, troubles) for entry in found.entries]
+    rows = [_row(folder, entry, clips, troubles) for entry in found.entries]
+    for row in rows:
+        row.rate = (found.clips or {}).get("fps", row.rate)
     known = {row.file for row in rows}
     for trouble in list(troubles):
         file = _file_of(folder, trouble)
@@ -111,13 +115,13 @@ def replaced(count: int) -> str:
     return f"; replaced {counted(count, 'clip')} of the same character and motion" if count else ""
 
 
-def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:
+def _row(folder: str, entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: list[str]) -> Row:
     row = Row(**{name: entry[name] for name in ("character", "motion", "frames", "fps", "source", "file")})
     clip = clips.get((row.character, row.motion))
     if clip is not None:
         row.postures, row.body = np.array(clip["points"], np.float64), bodies.named(clip["skeleton"])
         return row
-    mine = [trouble for trouble in troubles if row.file in trouble]
+    mine = [trouble for trouble in troubles if _file_of(folder, trouble) == row.file]
     row.trouble = mine[0] if mine else f"{row.file}: cannot be read"
     for trouble in mine:
         troubles.remove(trouble)
@@ -125,20 +129,19 @@ def _row(entry: dict[str, Any], clips: dict[tuple[str, str], Any], troubles: lis
 
 
 def _file_of(folder: str, trouble: str) -> str:
-    """The clip file in the folder that a message names; "" if it names none."""
-    try:
-        files = sorted(os.listdir(folder), key=len, reverse=True)
-    except OSError:
-        return ""
-    return next((file for file in files if file.endswith(ENDING) and file in trouble), "")
+    """The clip file in the folder that a message is about; "" if it is about none."""
+    start = os.path.join(folder, "")
+    name, found, _ = trouble.removeprefix(start).partition(f"{ENDING}:")
+    return name + ENDING if found and trouble.startswith(start) and not any(c in name for c in "/\\:") else ""
 
 
 def clip_of(folder: str, character: str, motion: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """The clips of a library, and the options that choose one of them. Raises a `Problem` that names what is missing."""
-    clips = clips_of(folder)
-    names = [(clip["character"], clip["motion"]) for clip in clips["clips"]]
-    if (character, motion) in names:
-        return clips, {"character": character, "motion": motion}
+    """A clip of a library at its own frame rate, and the options that choose it. Raises a `Problem` that names what is missing."""
+    found = read_library(folder, character, motion, exact=True)
+    if found.clips["clips"]:
+        return found.clips, {"character": character, "motion": motion}
+    refuse_damaged(folder, found)
+    names = [(clip["character"], clip["motion"]) for clip in clips_of(folder)["clips"]]
     mine = sorted({own for who, own in names if who == character})
     others = sorted({who for who, own in names if own == motion})
     has = f'"{character}" has {_quoted(mine)}' if mine else f'{_quoted(others)} {"has" if len(others) == 1 else "have"} it' if others else ""
@@ -146,14 +149,22 @@ def clip_of(folder: str, character: str, motion: str) -> tuple[dict[str, Any], d
     raise Problem(f'The library {folder} has no clip "{motion}" by "{character}"{has}: choose one of its {counted(len(names), "clip")}')
 
 
+def refuse_damaged(folder: str, found: Found) -> None:
+    """Raises a `Problem` that says what is wrong with a file that was asked for, if one cannot be used."""
+    files = [entry["file"] for entry in found.entries]
+    for trouble in found.troubles:
+        if _file_of(folder, trouble) in files:
+            raise Problem(trouble)
+
+
 def _quoted(names: list[str], most: int = 4) -> str:
     said = [f'"{name}"' for name in names[:most]]
     return ", ".join(said + ([f"{len(names) - most} more"] if len(names) > most else []))
 
 
-def clips_of(folder: str) -> dict[str, Any]:
-    """All clips of a library as a file of clips. Raises a `Problem` if there are none."""
-    found = read_library(folder)
+def clips_of(folder: str, rate_of: tuple[str, str] | None = None) -> dict[str, Any]:
+    """All clips of a library as a file of clips, at the frame rate of one of them (`rate_of`). Raises a `Problem` if there are none."""
+    found = read_library(folder, rate_of=rate_of)
     if not found.entries:
         raise Problem(f"The library {folder} has no clips: save one first")
     return found.clips

@@ -157,4 +157,9 @@ class Manner:
         It may run in a thread, since it does not use the operator any more.
         """
         said = {"style": self.style, "motion": motion, "content": content, "preset": self.preset, "strength": self.strength}
-        return lambda progress, threads: translate_and_judge(clips_of(folder), progress=progress, threads=threads, **said)
+
+        def made(progress: Progress, threads: int) -> Translated:
+            clips = clips_of(folder, rate_of=(content, motion))
+            return translate_and_judge(clips, progress=progress, threads=threads, **said)
+
+        return made

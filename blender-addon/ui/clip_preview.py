@@ -47,7 +47,7 @@ def figure(row: Row, scene) -> int:
 def posture_of(row: Row, scene) -> int:
     """Index of a clip's posture on the scene's frame."""
     fps = scene.render.fps / scene.render.fps_base
-    return stick_figure.moment(scene.frame_current, scene.frame_start, fps, row.fps, len(row.postures))
+    return stick_figure.moment(scene.frame_current, scene.frame_start, fps, row.rate, len(row.postures))
 
 
 def pixels(row: Row, index: int, size: int) -> np.ndarray:

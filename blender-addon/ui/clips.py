@@ -53,10 +53,10 @@ def draw_browser(layout, context) -> None:
     chosen = clip_browser.chosen()
     if chosen is not None:
         layout.template_icon(clip_preview.figure(chosen, context.scene), scale=7.0)
-        moment = clip_preview.posture_of(chosen, context.scene) + 1
+        moment = 1 + round(clip_preview.posture_of(chosen, context.scene) * chosen.fps / chosen.rate)
         row = layout.row()
         body = "" if chosen.human else f", {chosen.body.name}"
-        row.label(text=f"Frame {moment} of {len(chosen.postures)}, {chosen.fps:g} fps{body}")
+        row.label(text=f"Frame {moment} of {chosen.frames}, {chosen.fps:g} fps{body}")
         if gp.is_drawing(context.object):
             row.prop(listed, "in_view", text="", icon="OVERLAY")
         if chosen.source:

@@ -177,3 +177,19 @@ def test_the_figure_stands_beside_the_drawing(addon, tmp_path):
     seen = m.to_pixels(beside @ matrix[:3, :3].T + matrix[:3, 3])
     assert seen[:, 0].min() >= 59 and abs(seen[:, 1].max() - 80) < 1 and seen[:, 1].min() > 9
     assert not np.allclose(lines, beside)
+
+
+def test_a_clip_of_another_rate_plays_at_its_speed(addon, tmp_path):
+    style, folder = addon("rototoon.style"), shelf(addon, tmp_path)
+    entry = {"character": "mocap", "motion": "walk", "points": postures(addon, 121).tolist()}
+    style.add_to_library(str(folder), {"rototoon_clips": 1, "fps": 120, "keypoints": list(style.KEY_POINTS), "clips": [entry]}, "a.bvh")
+    row = addon("style.clip_library").read(str(folder)).find("mocap", "walk")
+    assert (row.frames, row.fps, len(row.postures), row.rate) == (121, 120, 13, 12)
+    scene = bpy.context.scene
+    scene.render.fps, scene.frame_start = 24, 1
+    preview = addon("ui.clip_preview")
+    shown = []
+    for frame in (1, 3, 13, 25):
+        scene.frame_set(frame)
+        shown.append(preview.posture_of(row, scene))
+    assert shown == [0, 1, 6, 12], "a second of film is a second of the clip"

@@ -90,3 +90,16 @@ def test_files_that_are_not_there_or_not_of_a_figure(addon, tmp_path):
     (folder / "crane.bvh").write_text(motion().replace("LeftForeArm", "Boom"))
     with pytest.raises(RuntimeError, match="l_elbow"):
         bpy.ops.rototoon.import_motion(filepath=str(folder / "crane.bvh"))
+
+
+def test_a_pelvis_of_another_name_is_told(addon, tmp_path):
+    file = shot(tmp_path) / "stroll.bvh"
+    file.write_text(motion().replace("ROOT Hips", "ROOT COG"))
+    scripting = addon("scripting")
+    scripting.take_reports()
+    assert bpy.ops.rototoon.import_motion(filepath=str(file), view="front") == {"FINISHED"}
+    report = scripting.take_reports()[-1]
+    assert report.kind == "WARNING"
+    assert 'stroll.bvh: the pelvis is "COG", on which both thighs hang, not "Spine"' in report.text
+    clip = addon("style.clip_browser").shelf().find("anna", "stroll")
+    assert (clip.postures[0, 2] - clip.postures[0, 0]) == pytest.approx([0, -1], abs=1e-6), "the torso is the unit"

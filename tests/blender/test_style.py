@@ -2,6 +2,7 @@
 
 import json
 import math
+import shutil
 
 import bpy
 import numpy as np
@@ -325,3 +326,46 @@ def test_a_clip_that_is_not_there_is_named_with_those_that_are(addon, tmp_path):
     ):
         with pytest.raises(RuntimeError, match=text):
             bpy.ops.rototoon.reshape_drawing(character=character, motion=motion, folder=shelf)
+
+
+def test_a_clip_moves_a_drawing_at_its_own_rate_whatever_the_library_has(addon, tmp_path):
+    shelf, only = tmp_path / "clips", tmp_path / "only"
+    style = addon("rototoon.style")
+    bpy.context.scene.render.fps = 25
+    performer(addon, tmp_path)
+    bpy.ops.rototoon.save_clip(character="anna", motion="walk", folder=str(only))
+    bpy.ops.rototoon.save_clip(character="anna", motion="walk", folder=str(shelf))
+    clip = style.read_library(str(only)).clips
+    for character, motion in (("bert", "walk"), ("bert", "run"), ("carl", "walk")):
+        style.add_to_library(str(shelf), clip | {"fps": 24, "clips": [clip["clips"][0] | {"character": character, "motion": motion}]})
+    ob = second_drawing(addon, tmp_path, str(only))
+
+    def moved(folder):
+        assert bpy.ops.rototoon.reshape_drawing(character="anna", motion="walk", folder=str(folder)) == {"FINISHED"}
+        frames = sorted(frame.frame_number for frame in shots.layer_of(ob).frames)
+        return [np.concatenate([points for _, points in shots.pixels(addon, ob, frame)]) for frame in frames]
+
+    alone, among_others = moved(only), moved(shelf)
+    assert len(alone) == len(among_others)
+    assert all(np.array_equal(a, b) for a, b in zip(alone, among_others))
+
+
+def test_a_clip_file_copied_over_another_stops_only_the_clip_that_is_gone(addon, tmp_path):
+    shelf = tmp_path / "clips"
+    performer(addon, tmp_path)
+    for character in ("anna", "bert"):
+        for motion in ("walk", "run"):
+            bpy.ops.rototoon.save_clip(character=character, motion=motion, folder=str(shelf))
+    second_drawing(addon, tmp_path, str(shelf))
+    shutil.copy(shelf / "anna-walk.clip.json", shelf / "anna-run.clip.json")
+    rows = addon("style.clip_library").read(str(shelf)).rows
+    said = 'anna-run.clip.json: found a second clip of character "anna" and motion "walk"; the clip in anna-walk.clip.json is used'
+    assert [(row.character, row.motion) for row in rows] == [("anna", "walk"), ("bert", "run"), ("bert", "walk"), ("anna-run", "")]
+    assert [row.trouble != "" for row in rows] == [False, False, False, True] and rows[3].trouble.endswith(said)
+    for character, motion in (("anna", "walk"), ("bert", "run")):
+        assert bpy.ops.rototoon.reshape_drawing(character=character, motion=motion) == {"FINISHED"}
+    with pytest.raises(RuntimeError, match='has no clip "run" by "anna"; "anna" has "walk"'):
+        bpy.ops.rototoon.reshape_drawing(character="anna", motion="run")
+    (shelf / "bert-run.clip.json").write_text("{")
+    with pytest.raises(RuntimeError, match="bert-run.clip.json: found text that is not JSON"):
+        bpy.ops.rototoon.reshape_drawing(character="bert", motion="run")

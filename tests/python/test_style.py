@@ -120,6 +120,23 @@ def test_a_library_is_searched(shelf):
     assert len(style.read_library(shelf).clips["clips"]) == 3
 
 
+def test_a_clip_is_found_by_its_name_and_others_come_at_its_rate(tmp_path):
+    folder = str(tmp_path / "clips")
+    walk = style.capture_clip(figure(FRAMES, 0.0, 0.3), "plain", "walk").clips
+    for character, motion, fps in (("plain", "walk", 25), ("plainer", "walk", 24), ("plain", "sleepwalk", 24)):
+        style.add_to_library(folder, walk | {"fps": fps, "clips": [walk["clips"][0] | {"character": character, "motion": motion}]})
+    found = style.read_library(folder, "plain", "walk", exact=True)
+    assert [entry["file"] for entry in found.entries] == ["plain-walk.clip.json"]
+    assert (found.clips["fps"], found.clips["clips"]) == (25, walk["clips"])
+    assert style.read_library(folder, "plain", "walk").clips["fps"] == 24, "that of most"
+    led = style.read_library(folder, rate_of=("plain", "walk")).clips
+    assert (led["fps"], len(led["clips"])) == (25, 3)
+    assert [clip["points"] for clip in led["clips"] if clip["motion"] == "walk"][0] == walk["clips"][0]["points"]
+    assert len(style.read_library(folder, "", "walk", exact=True).clips["clips"]) == 2
+    none = style.read_library(folder, "plain", "run", exact=True)
+    assert (none.entries, none.troubles, none.clips["clips"]) == ([], [], [])
+
+
 def test_clips_of_a_library_are_replaced_on_request_only(tmp_path):
     folder = str(tmp_path / "clips")
     walk = style.capture_clip(figure(FRAMES, 0.0, 0.3), "plain", "walk").clips

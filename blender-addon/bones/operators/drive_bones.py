@@ -2,14 +2,14 @@
 
 import bpy
 import numpy as np
-from rototoon.style import skeleton_of, stance_of
+from rototoon.style import Found, read_library, skeleton_of, stance_of
 
 from ...blender import actions, armatures, preferences
 from ...blender.errors import Problem
 from ...blender.frames import kept
 from ...common import jobs
 from ...common.operators import Long, OnArmature
-from ...style.clip_library import clips_of, folder_of
+from ...style.clip_library import clips_of, folder_of, refuse_damaged
 from ...style.clip_properties import Manner, mirroring, shared
 from .. import driving, key_points
 
@@ -49,8 +49,9 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
 
         def work(progress):
             if remake is None:
-                self._file = clips = clips_of(folder)
-                return _only(clips, content, motion), clips["fps"]
+                found = read_library(folder, content, motion, exact=True)
+                self._file = found.clips
+                return _only(folder, found, content, motion), found.clips["fps"]
             made = remake(progress, threads)
             self._rests_on, self._file = made.notes, made.clips
             return made.clips["clips"][0], made.clips["fps"]
@@ -88,13 +89,15 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         return said + (f'; the action "{before}" is kept' if before else "")
 
 
-def _only(clips, character: str, motion: str):
-    found = [c for c in clips["clips"] if c["motion"] == motion and character in ("", c["character"])]
-    if len(found) == 1 and (body := skeleton_of(clips, found[0])) != "human":
+def _only(folder: str, read: Found, character: str, motion: str):
+    found = read.clips["clips"]
+    if not found:
+        refuse_damaged(folder, read)
+    if len(found) == 1 and (body := skeleton_of(read.clips, found[0])) != "human":
         name = body if isinstance(body, str) else body["name"]
         raise Problem(f'"{motion}" by "{character}" is a clip of the body "{name}": bones follow human clips')
     if len(found) != 1:
-        names = ", ".join(f"{c['character']} {c['motion']}" for c in clips["clips"])
+        names = ", ".join(f"{c['character']} {c['motion']}" for c in clips_of(folder)["clips"])
         raise Problem(f'Found {len(found)} clips "{motion}" by "{character}", expected one; the library has {names}')
     return found[0]
 

@@ -3,7 +3,7 @@
 import ctypes
 from typing import Any
 
-HEADER_HASH = 0x2e1172637fa8d063
+HEADER_HASH = 0x78448462b221a0d3
 
 ROTOTOON_ABI_VERSION = 1
 ROTOTOON_PAIR = 0

@@ -4,7 +4,7 @@ import os
 
 import bpy
 from rototoon import RototoonError
-from rototoon.style import import_motion
+from rototoon.style import import_and_note
 
 from ...blender.errors import Problem
 from ...common.operators import Guarded
@@ -102,9 +102,12 @@ class ROTOTOON_OT_import_motion(Guarded, bpy.types.Operator):
         name = (self.motion if alone else "") or os.path.splitext(os.path.basename(whole))[0]
         view = self.angle if self.view == "angle" else self.view
         try:
-            return import_motion(motion, character, name, view=view, way=self.way)[0]
+            made = import_and_note(motion, character, name, view=view, way=self.way)
         except RototoonError as error:
             raise Problem(f"{os.path.basename(path)}: {error}") from error
+        for note in made.notes:
+            self.warn(f"{os.path.basename(path)}: {note}")
+        return made.clips
 
 
 CLASSES = (ROTOTOON_OT_import_motion,)

@@ -52,6 +52,20 @@ pub fn text(path: &Path) -> io::Result<String> {
     })
 }
 
+/// Whether the error of a lock says that the disk knows no locks: some disks of the network, one whose lock service does not run,
+/// and some file systems of users. Rust names only a part of what systems say then.
+pub fn knows_no_locks(error: &io::Error) -> bool {
+    #[cfg(unix)]
+    let named = {
+        use rustix::io::Errno;
+        let known = [Errno::NOLCK, Errno::OPNOTSUPP, Errno::NOSYS, Errno::INVAL];
+        error.raw_os_error().is_some_and(|raw| known.contains(&Errno::from_raw_os_error(raw)))
+    };
+    #[cfg(not(unix))]
+    let named = false;
+    named || error.kind() == io::ErrorKind::Unsupported
+}
+
 /// A reader that repeats a call which a signal interrupted.
 ///
 /// On a slow or remote disk a signal may end a call before it has read anything. The standard library's functions for a
@@ -108,6 +122,16 @@ mod tests {
         std::fs::write(&path, b"ab\xFFc").unwrap();
         assert_eq!(text(&path).unwrap_err().to_string(), "byte 2 is not UTF-8 text");
         assert_eq!(bytes(folder.path()).unwrap_err().to_string(), "it is a folder, expected a file");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn disks_without_locks_are_told_from_other_failures() {
+        use rustix::io::Errno;
+        let of = |errno: Errno| io::Error::from_raw_os_error(errno.raw_os_error());
+        assert!([Errno::NOLCK, Errno::OPNOTSUPP, Errno::INVAL, Errno::NOSYS].map(of).iter().all(knows_no_locks));
+        assert!(knows_no_locks(&io::ErrorKind::Unsupported.into()));
+        assert!(![Errno::IO, Errno::ACCESS, Errno::INTR].map(of).iter().any(knows_no_locks));
     }
 
     #[cfg(unix)]

@@ -7,6 +7,7 @@
 //! Limits: on a network disk the locks of a machine that fell silent end when the server gives them up, commonly after
 //! some 90 seconds. On a disk without locks, two workers at one shot write the same bytes twice.
 
+use rototoon::file;
 use rototoon::project::WriteError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
@@ -33,7 +34,7 @@ impl Lock {
         match file.try_lock() {
             Ok(()) => Ok(Some(Self(file))),
             Err(TryLockError::WouldBlock) => Ok(None),
-            Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(Some(Self(file))),
+            Err(TryLockError::Error(error)) if file::knows_no_locks(&error) => Ok(Some(Self(file))),
             Err(TryLockError::Error(error)) => Err(failed(error)),
         }
     }

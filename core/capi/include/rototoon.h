@@ -719,7 +719,8 @@ RototoonStatus rototoon_clip_stance(const uint8_t *clips,
 // - `first`, `last`: the frames of the file, counted from 0. Give both or none.
 // - `fps`: frames per second of the clip.
 //
-// `made` is JSON: `{"clips": a file of clips, "yaw": the direction in degrees}`.
+// `made` is JSON: `{"clips": a file of clips, "yaw": the direction in degrees, "notes": [text]}`. `notes` are what a person should
+// know: joints that were not taken by their names.
 RototoonStatus rototoon_import_motion(const uint8_t *motion,
                                       size_t motion_length,
                                       const uint8_t *options,
@@ -820,11 +821,13 @@ RototoonStatus rototoon_library_add_files(const uint8_t *folder,
 // Finds clips in the library in a folder.
 //
 // `wanted` is a JSON object, in which all fields may be left out: `character` and `motion` are words that the names
-// must contain, in upper or lower case; `read` is whether to read the clips.
+// must contain, in upper or lower case; `exact` is whether they are the names themselves (an empty one is any); `read` is
+// whether to read the clips; `rate_of` is the character and the motion of a clip.
 //
 // `found` is JSON: `{"entries": [{"file", "character", "motion", "frames", "fps", "source"}], "troubles": [text],
 // "clips": a file of clips or null}`. `troubles` are messages about files that cannot be used. The clips are brought to one
-// frame rate: that which most of them have, and the highest of several such rates.
+// frame rate: that of the clip `rate_of`, else that which most of them have, and the highest of several such rates. With `read`
+// or `exact` the entries are as the files are; otherwise as the index says.
 RototoonStatus rototoon_library_find(const uint8_t *folder,
                                      size_t folder_length,
                                      const uint8_t *wanted,

@@ -9,7 +9,7 @@ use rototoon::import::bvh::{self, JointMap, Up, View};
 use rototoon::pipeline::{self, ClipJob, Mirror, PipelineError, ReshapeJob, Side};
 use rototoon::project::Document;
 use rototoon::project::clips::{Clips, parse_key_poses};
-use rototoon::project::library::{Addition, Entry, Existing, Library};
+use rototoon::project::library::{Addition, Checked, Entry, Existing, Library, Trouble};
 use rototoon::project::skeleton as bodies;
 use rototoon::reshape::contacts::Contacts;
 use rototoon::reshape::{facing, puppet};
@@ -143,7 +143,7 @@ pub fn import(text: &str, json: &str) -> Result<String, Failure> {
     }
     let made = bvh::seen(text, &given.read()?).map_err(Failure::error)?;
     let clips = Clips { clips: vec![Clip::new(given.character, given.motion, made.postures)], fps: made.fps };
-    Ok(format!(r#"{{"clips": {}, "yaw": {}}}"#, clips.text().trim_end(), made.yaw))
+    Ok(format!(r#"{{"clips": {}, "yaw": {}, "notes": {}}}"#, clips.text().trim_end(), made.yaw, json!(made.notes)))
 }
 
 #[derive(Deserialize)]
@@ -340,7 +340,7 @@ pub fn library_add_files(folder: &str, files: &str, json: &str) -> Result<String
     Ok(json!({"replaced": done.replaced, "aside": aside}).to_string())
 }
 
-/// Finds the clips of a library whose character and motion contain given words, and reads them if requested.
+/// Finds the clips of a library whose character and motion contain given words or have given names, and reads them if requested.
 pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields, default)]
@@ -349,21 +349,43 @@ pub fn library_find(folder: &str, json: &str) -> Result<String, Failure> {
         character: String,
         motion: String,
         read: bool,
+        exact: bool,
+        rate_of: Option<(String, String)>,
     }
     let wanted: Wanted = options(json)?;
     let library = Library::open(Path::new(folder));
-    let entries: Vec<&Entry> = library.search(&wanted.character, &wanted.motion).collect();
     let mut troubles: Vec<String> = library.troubles().iter().map(ToString::to_string).collect();
-    let clips = if wanted.read {
-        let fps = Library::usual_rate(entries.iter().copied());
-        let (clips, more) = library.read_at(entries.iter().copied(), fps);
-        troubles.extend(more.iter().map(ToString::to_string));
-        Clips { clips, fps }.text()
+    let (entries, clips) = if wanted.read || wanted.exact {
+        let found = if wanted.exact {
+            library.named(&wanted.character, &wanted.motion)
+        } else {
+            library.checked(|entry| entry.has(&wanted.character, &wanted.motion))
+        };
+        troubles.extend(found.troubles().map(ToString::to_string));
+        let leads = |entry: &Entry| {
+            wanted.rate_of.as_ref().is_some_and(|(who, what)| entry.character == *who && entry.motion == *what)
+        };
+        let leading = found.clips.iter().map(|(entry, _)| entry).find(|entry| leads(entry));
+        let usual = || Library::usual_rate(found.clips.iter().map(|(entry, _)| entry));
+        let fps = leading.map_or_else(usual, |entry| entry.fps);
+        let entries = json!(in_order(&library, &found));
+        (entries, wanted.read.then(|| found.at_rate(fps).text()))
     } else {
-        "null".to_owned()
+        (json!(library.search(&wanted.character, &wanted.motion).collect::<Vec<_>>()), None)
     };
-    let (entries, troubles) = (json!(entries), json!(troubles));
-    Ok(format!(r#"{{"entries": {entries}, "troubles": {troubles}, "clips": {}}}"#, clips.trim_end()))
+    let (troubles, clips) = (json!(troubles), clips.as_deref().unwrap_or("null").trim_end());
+    Ok(format!(r#"{{"entries": {entries}, "troubles": {troubles}, "clips": {clips}}}"#))
+}
+
+/// The entries of clips and of unusable files in the order of the library. Of files with one clip, one has an entry.
+fn in_order<'a>(library: &Library, found: &'a Checked) -> Vec<&'a Entry> {
+    let unusable = found.unusable.iter().filter(|(_, trouble)| !matches!(trouble, Trouble::Twice { .. }));
+    let mut entries: Vec<&Entry> =
+        found.clips.iter().map(|(entry, _)| entry).chain(unusable.map(|(entry, _)| entry)).collect();
+    let order: BTreeMap<&str, usize> =
+        library.entries().iter().enumerate().map(|(k, entry)| (entry.file.as_str(), k)).collect();
+    entries.sort_by_key(|entry| order.get(entry.file.as_str()));
+    entries
 }
 
 #[cfg(test)]

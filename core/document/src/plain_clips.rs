@@ -36,20 +36,25 @@ struct Moves<'a> {
     #[serde(borrow)]
     motion: Cow<'a, str>,
     points: Vec<Posture>,
+    #[serde(default)]
+    deviation: Vec<Vec<f64>>,
     #[serde(borrow, default)]
     guessed: BTreeMap<Cow<'a, str>, Vec<[usize; 2]>>,
 }
 
 impl Moves<'_> {
-    /// The clip; none if what is guessed names no key point or no frame.
+    /// The clip; none if what is guessed names no key point or no frame, or if deviations are not those of the points.
     fn clip(self) -> Option<Clip> {
         let frames = self.points.len();
+        if !self.deviation.is_empty() && !super::clips::deviates(&self.deviation, frames, NAMES.len()) {
+            return None;
+        }
         let guess = |(name, times): (Cow<'_, str>, Vec<[usize; 2]>)| {
             let point = NAMES.iter().position(|known| *known == name)?;
             super::clips::rises(&times, frames).then_some((point, times))
         };
         let guessed = self.guessed.into_iter().map(guess).collect::<Option<_>>()?;
-        Some(Clip { guessed, ..Clip::new(self.character, self.motion, self.points) })
+        Some(Clip { guessed, deviation: self.deviation, ..Clip::new(self.character, self.motion, self.points) })
     }
 }
 

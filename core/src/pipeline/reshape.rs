@@ -154,7 +154,7 @@ pub fn reshape(document: &mut Document, job: &ReshapeJob, progress: &dyn Progres
     let loose: Vec<_> =
         loose.into_iter().map(|line| (line.moved(&motion), line)).map(|(at, line)| (line, at)).collect();
     own.forget(document);
-    store::store(document, footage, (&bodies, &moved), &loose, &strokes, &depths.by_part);
+    store::store(document, footage, (&bodies, &moved), &loose, (&strokes, rest), &depths.by_part);
     correct(document, &mut corrections, &mut report);
     // All frames show the drawing at rest, and with it its side.
     let frames = (document.scene.footage.first, document.scene.footage.last);

@@ -194,18 +194,31 @@ pub fn cycles(postures: &[Posture]) -> Vec<Vec<Posture>> {
     cuts.windows(2).map(|cut| postures[cut[0]..cut[1]].to_vec()).collect()
 }
 
-/// The mean ratio of the lengths of the style's and the content's clips over the motions that both have (a geometric
-/// mean); 1 if there are none.
-pub(super) fn pace(clips: &[Clip], request: &Request) -> f64 {
-    let frames = |character: &str, motion: &str| {
-        clips.iter().find(|c| c.character == character && c.motion == motion).map(|c| c.postures.len() as f64)
-    };
-    let ratios: Vec<f64> = clips
+/// How much slower a style is than the content.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PaceRatio {
+    /// The length of the style's motions in those of the content's; 1 if nothing tells it.
+    pub ratio: f64,
+    /// Number of motions that tell it.
+    pub motions: usize,
+}
+
+/// The median ratio of the lengths of the style's and the content's clips over the motions that both have. A clip of one posture is a
+/// drawn pose and has no length.
+pub(super) fn pace(clips: &[Clip], request: &Request) -> PaceRatio {
+    let frames = |clip: &Clip| Some(clip.postures.len()).filter(|frames| *frames > 1).map(|frames| frames as f64);
+    let content =
+        |motion: &str| clips.iter().find(|c| c.character == request.content && c.motion == motion).and_then(frames);
+    let mut ratios: Vec<f64> = clips
         .iter()
         .filter(|c| c.character == request.style && c.motion != request.motion)
-        .filter_map(|c| Some((c.postures.len() as f64 / frames(request.content, &c.motion)?).ln()))
+        .filter_map(|c| Some((frames(c)? / content(&c.motion)?).ln()))
         .collect();
-    if ratios.is_empty() { 1.0 } else { (ratios.iter().sum::<f64>() / ratios.len() as f64).exp() }
+    ratios.sort_by(f64::total_cmp);
+    let motions = ratios.len();
+    let middle = motions.saturating_sub(1) / 2..motions / 2 + 1;
+    let ratio = ratios.get(middle).map_or(1.0, |middle| (middle.iter().sum::<f64>() / middle.len() as f64).exp());
+    PaceRatio { ratio, motions }
 }
 
 /// Resamples a clip to play slower (`ratio` above 1) or faster. Its standard deviations come from the nearest frame.
@@ -228,6 +241,25 @@ mod tests {
         std::array::from_fn(|k| {
             Point::new(k as f64 * phase.sin(), (2.0 * phase).cos() + k as f64 * phase.cos()) * (k.min(1) as f64)
         })
+    }
+
+    #[test]
+    fn drawn_poses_and_single_slow_motions_do_not_tell_the_pace() {
+        let clip = |who: &str, what: &str, frames: usize| Clip::new(who, what, vec![swing(0.1); frames]);
+        let request = Request { style: "old", motion: "walk", content: "plain", keys: &[] };
+        let mut clips = vec![clip("plain", "walk", 32)];
+        let motions = ["run", "bow", "hop", "nod", "wave"];
+        clips.extend(motions.map(|motion| clip("plain", motion, 20)));
+        let told = |frames: [usize; 5]| {
+            let more = motions.iter().zip(frames).map(|(motion, frames)| clip("old", motion, frames));
+            let found = pace(&clips.iter().cloned().chain(more).collect::<Vec<_>>(), &request);
+            (format!("{:.3}", found.ratio), found.motions)
+        };
+        assert_eq!(told([24, 24, 1, 1, 1]), ("1.200".to_owned(), 2));
+        assert_eq!(told([60, 24, 25, 23, 24]), ("1.200".to_owned(), 5), "a run of three cycles");
+        assert_eq!(told([1; 5]), ("1.000".to_owned(), 0));
+        clips[1].postures.truncate(1);
+        assert_eq!(pace(&[&clips[..2], &[clip("old", "run", 20)]].concat(), &request).motions, 0);
     }
 
     #[test]

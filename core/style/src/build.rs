@@ -40,7 +40,8 @@ pub(super) fn of(pairs: &[(&[Posture], &[Posture])]) -> Build {
     })
 }
 
-fn long(postures: &[Posture], limb: usize) -> f64 {
+/// What a limb is long in a clip.
+pub(super) fn long(postures: &[Posture], limb: usize) -> f64 {
     let mut lengths: Vec<f64> = postures.iter().map(|p| limb_lengths(p)[limb]).collect();
     lengths.sort_by(f64::total_cmp);
     let at = (lengths.len().saturating_sub(1) as f64 * LONG).round() as usize;

@@ -1,6 +1,6 @@
 //! The known clips as a grid of characters × motions, in one frame: pelvis at the origin, torso length 1.
 //!
-//! Division by the character's torso and removal of the pelvis are the global half of the paper's unification (Liang et
+//! Division by the character's torso (by that of each framing, the module `framing`) and removal of the pelvis are the global half of the paper's unification (Liang et
 //! al. 2012, eq. 4), limbs of the content's lengths the other (the module `build`).
 //!
 //! Every clip of a motion is brought to one number of frames: that of the content's clip, or that of the motion's first
@@ -9,6 +9,7 @@
 
 use super::align;
 use super::build::{self, Build};
+use super::framing::Framings;
 use super::{Request, StyleError};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::Clip;
@@ -33,8 +34,8 @@ pub(super) struct Grid {
     pub content: usize,
     /// Index of the requested motion.
     pub motion: usize,
-    /// Torso length of each character in the unit of its clips.
-    pub torso: Vec<f64>,
+    /// Torso lengths of each character in the unit of its clips.
+    pub framings: Vec<Framings>,
     /// Frames of the content's clip.
     pub frames: usize,
     /// Build of each character beside the content's. The clips have the content's.
@@ -65,12 +66,12 @@ impl Grid {
         let index = |names: &[String], name: &str| names.iter().position(|n| n == name).unwrap_or(0);
         let (style, content) = (index(&characters, request.style), index(&characters, request.content));
         let motion = index(&motions, request.motion);
-        let torso = characters.iter().map(|name| torso_of(clips, name)).collect::<Result<_, _>>()?;
+        let framings = characters.iter().map(|name| Framings::of(clips, name)).collect::<Result<_, _>>()?;
         let mut grid = Self {
             style,
             content,
             motion,
-            torso,
+            framings,
             frames: 0,
             builds: Vec::new(),
             clips: Vec::new(),
@@ -87,7 +88,8 @@ impl Grid {
             let place = |names: &[String], name: &str| names.iter().position(|n| n == name);
             if let (Some(s), Some(m)) = (place(&self.characters, &clip.character), place(&self.motions, &clip.motion)) {
                 let postures = clip.human().unwrap_or_default();
-                let postures = postures.iter().map(|p| unified(p, self.torso[s])).collect();
+                let torso = self.framings[s].torso_of(&clip.motion);
+                let postures = postures.iter().map(|p| unified(p, torso)).collect();
                 self.clips[s * self.motions.len() + m] = Some(postures);
             }
         }
@@ -178,19 +180,6 @@ pub(super) fn posture(row: &Row) -> Posture {
 
 fn is_target(clip: &Clip, request: &Request) -> bool {
     clip.character == request.style && clip.motion == request.motion
-}
-
-fn torso_of(clips: &[Clip], name: &str) -> Result<f64, StyleError> {
-    let mut lengths: Vec<f64> =
-        clips.iter().filter(|c| c.character == name).filter_map(Clip::human).flatten().map(|p| torso(&p)).collect();
-    if lengths.is_empty() {
-        return Ok(1.0);
-    }
-    lengths.sort_by(f64::total_cmp);
-    match lengths[lengths.len() / 2] {
-        length if length > 0.0 && length.is_finite() => Ok(length),
-        found => Err(StyleError::Torso { character: name.to_owned(), found }),
-    }
 }
 
 fn check(clips: &[Clip], request: &Request) -> Result<(), StyleError> {

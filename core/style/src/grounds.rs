@@ -3,6 +3,7 @@
 //! A library that shows little of a style cannot be seen from the result: it is a clip like any other. So a translation
 //! hands back what it had to go by, and the command line and Blender say it with the same words.
 
+use super::align::PaceRatio;
 use super::episodes::{LEAST, Sure};
 use super::grid::Grid;
 use super::sides::Sides;
@@ -24,6 +25,10 @@ pub struct Grounds {
     pub sides: Sides,
     /// How sure it is, where the library tells.
     pub sure: Option<Sure>,
+    /// What is said of clips from shots of another framing.
+    framings: Vec<String>,
+    /// How much slower the style is, if its timing was taken.
+    pub(super) pace: Option<PaceRatio>,
 }
 
 impl Grounds {
@@ -36,6 +41,8 @@ impl Grounds {
             how: (options.preset, options.strength, options.keep_lengths),
             sides,
             sure: None,
+            framings: grid.characters.iter().zip(&grid.framings).flat_map(|(name, own)| own.notes(name)).collect(),
+            pace: None,
         }
     }
 
@@ -55,7 +62,21 @@ impl Grounds {
 
     /// What a person should know about the result, a sentence each.
     pub fn notes(&self) -> Vec<String> {
-        self.sides.notes().into_iter().chain(self.of_style()).collect()
+        let first = self.sides.notes().into_iter().chain(self.framings.iter().cloned());
+        first.chain(self.of_style()).chain(self.pace.map(|pace| self.of_pace(pace))).collect()
+    }
+
+    fn of_pace(&self, pace: PaceRatio) -> String {
+        let style = &self.style;
+        match pace.motions {
+            0 => format!(
+                "the timing is the content's: {style:?} and the content have no other motion of several frames both"
+            ),
+            count => format!(
+                "the timing is the style's: motions of {style:?} take {:.0} % of the content's frames (median of {count})",
+                100.0 * pace.ratio
+            ),
+        }
     }
 
     /// What there is to say about what is known of the style.

@@ -6,6 +6,7 @@
 //! - [`align`]: clips of one motion brought together in time; `build`: all clips on one body
 //! - [`gaussian`]: what a character adds to a motion, predicted from what it adds to others; `cells`: the clips as numbers
 //! - `stance`, `moving`: the posture that is held and the movement, each a process of its own; `likeness`: which characters are alike
+//! - `framing`: clips of a character from shots in which it has another size
 //! - `sides`: all clips brought to the side to which the content's looks
 //! - `distinct`: a result that is told apart from other characters
 //! - `episodes`: how far few clips of a style are to be trusted ([`Sure`]); `grounds`: what a result rests on, in words
@@ -71,6 +72,7 @@ mod distinct;
 mod episodes;
 pub mod factorisation;
 pub mod finish;
+mod framing;
 pub mod gaussian;
 mod grid;
 mod grounds;
@@ -360,7 +362,9 @@ pub fn translate_and_judge(
         clip.deviation = holds.held(&holds.drawings(&clip.deviation));
     }
     if options.pace == Pace::Style {
-        align::change_pace(&mut clip, align::pace(clips, request));
+        let pace = align::pace(clips, request);
+        align::change_pace(&mut clip, pace.ratio);
+        grounds.pace = Some(pace);
     }
     progress.report(STEP, 1.0)?;
     Ok((clip, grounds))
@@ -416,7 +420,7 @@ fn size_of(grid: &Grid, request: &Request) -> f64 {
     let known = (0..grid.motions.len()).any(|m| grid.get(grid.style, m).is_some());
     match request.keys.first() {
         Some(key) if !known => torso(&key.posture),
-        _ => grid.torso[grid.style],
+        _ => grid.framings[grid.style].torso,
     }
 }
 

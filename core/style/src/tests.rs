@@ -38,17 +38,17 @@ const MOTIONS: [&str; 4] = ["walk", "run", "stroll", "bow"];
 const PEOPLE: [(&str, f64, f64); 5] =
     [("plain", 0.0, 0.0), ("old", 0.5, 0.1), ("proud", -0.15, -0.2), ("shy", 0.2, 0.4), ("bold", -0.05, 0.6)];
 
-fn clip(person: usize, motion: usize, frames: usize) -> Clip {
+pub(crate) fn clip(person: usize, motion: usize, frames: usize) -> Clip {
     let (name, stoop, arms) = PEOPLE[person];
     let at = |f: usize| figure(motion, f as f64 / frames as f64, stoop, arms);
     Clip::new(name, MOTIONS[motion], (0..frames).map(at).collect())
 }
 
-fn library() -> Vec<Clip> {
+pub(crate) fn library() -> Vec<Clip> {
     (0..PEOPLE.len()).flat_map(|person| (0..4).map(move |motion| clip(person, motion, 24))).collect()
 }
 
-fn request<'a>(keys: &'a [KeyPose]) -> Request<'a> {
+pub(crate) fn request<'a>(keys: &'a [KeyPose]) -> Request<'a> {
     Request { style: "old", motion: "run", content: "plain", keys }
 }
 
@@ -60,7 +60,7 @@ fn resample_to(clip: &mut Clip, frames: usize) {
     clip.postures = resample(&clip.human().unwrap(), frames).into_iter().map(Vec::from).collect();
 }
 
-fn apart(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
+pub(crate) fn apart(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
     assert_eq!(a.len(), b.len());
     let frame =
         |p: &Vec<Point>, q: &Vec<Point>| (1..COUNT).map(|k| (p[k] - p[0]).distance(q[k] - q[0])).sum::<f64>() / 16.0;

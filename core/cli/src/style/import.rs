@@ -112,6 +112,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         if options.view == View::Auto {
             line("view", &format!("{}: {:.0} degrees", file.display(), made.yaw));
         }
+        made.notes.iter().for_each(|note| line("note", &format!("{}: {note}", file.display())));
         if k == 0 {
             options.fps = Some(made.fps);
         }

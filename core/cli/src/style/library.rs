@@ -63,13 +63,16 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         return add(&mut library, given);
     }
     // The index alone does not tell which files are there and whole.
-    let asked = library.search(arguments::choice(given, "character"), arguments::choice(given, "motion"));
-    let (found, troubles) = library.checked(asked);
-    troubles.iter().for_each(|trouble| line("warning", &trouble.to_string()));
+    let (character, motion) = (arguments::choice(given, "character"), arguments::choice(given, "motion"));
+    let found = library.checked(|entry| entry.has(character, motion));
+    found.troubles().for_each(|trouble| line("warning", &trouble.to_string()));
     let mut out = std::io::stdout().lock();
-    for (e, clip) in found {
+    for (e, clip) in found.clips {
+        let file = folder.join(&e.file);
+        if !clip.deviation.is_empty() {
+            line("note", &format!("{}: made by translation, not captured", file.display()));
+        }
         if let Some(guesses) = pipeline::guesses(&clip) {
-            let file = folder.join(&e.file);
             line("note", &format!("{}: guessed, not captured: {guesses}", file.display()));
         }
         // A closed standard output, such as of `head`, is no error.
@@ -93,6 +96,10 @@ fn add(library: &mut Library, given: &ArgMatches) -> Result<(), Failure> {
     })?;
     for e in &added.replaced {
         line("note", &format!("replaced {:?} by {:?} ({})", e.motion, e.character, e.file));
+    }
+    if added.unlocked {
+        let folder = arguments::path(given, "folder").display();
+        line("note", &format!("{folder}: the disk knows no locks; let only one program change the library at a time"));
     }
     if let Some(path) = added.aside {
         line("note", &format!("the damaged index is kept as {}", path.display()));

@@ -50,9 +50,10 @@ fn load(from: &Path, leads: impl Fn(&str, &str) -> bool) -> Result<Clips, Failur
         return Clips::load(from).map_err(|e| Failure::Other(e.to_string()));
     }
     let library = Library::open(from);
-    let leading = library.entries().iter().find(|entry| leads(&entry.character, &entry.motion));
-    let fps = leading.map_or_else(|| Library::usual_rate(library.entries().iter()), |entry| entry.fps);
-    let (clips, troubles) = library.read_at(library.entries().iter(), fps);
-    library.troubles().iter().chain(&troubles).for_each(|trouble| line("warning", &trouble.to_string()));
-    Ok(Clips { clips, fps })
+    let found = library.checked(|_| true);
+    library.troubles().iter().chain(found.troubles()).for_each(|trouble| line("warning", &trouble.to_string()));
+    let entries = || found.clips.iter().map(|(entry, _)| entry);
+    let leading = entries().find(|entry| leads(&entry.character, &entry.motion));
+    let fps = leading.map_or_else(|| Library::usual_rate(entries()), |entry| entry.fps);
+    Ok(found.at_rate(fps))
 }

@@ -407,3 +407,39 @@ fn motion_capture_becomes_clips() {
     assert!(status == Some(2) && said.contains("--fps"), "{said}");
     assert_eq!(import(&[&path("none.bvh")]).0, Some(1));
 }
+
+#[test]
+fn a_clip_file_copied_over_another_is_named_and_the_others_are_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let (clips, shelf) = (folder.path().join("clips.json"), folder.path().join("shelf"));
+    let (from, to) = (clips.to_str().unwrap(), shelf.to_str().unwrap());
+    std::fs::write(&clips, library().to_string()).unwrap();
+    assert!(rototoon(&["style", "library", "add", to, from]).status.success());
+    let out = folder.path().join("out.json");
+    let translated = || {
+        let request = ["style", "translate", to, "--style", "old", "--motion", "run", "--content", "plain"];
+        let done = rototoon(&[&request[..], &["-o", out.to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        (std::fs::read_to_string(&out).unwrap(), String::from_utf8_lossy(&done.stderr).into_owned())
+    };
+    std::fs::remove_file(shelf.join("shy-bow.clip.json")).unwrap();
+    let (without, _) = translated();
+    std::fs::copy(shelf.join("shy-walk.clip.json"), shelf.join("shy-bow.clip.json")).unwrap();
+    let said = "shy-bow.clip.json: found a second clip of character \"shy\" and motion \"walk\"; the clip in shy-walk.clip.json is used";
+    let (with, warned) = translated();
+    assert!(with == without && warned.contains("warning: ") && warned.contains(said), "{warned}");
+    let listed = rototoon(&["style", "library", "list", to, "--character", "shy"]);
+    let list = String::from_utf8_lossy(&listed.stdout);
+    assert_eq!(list.lines().map(|line| line.split('\t').nth(1).unwrap()).collect::<Vec<_>>(), ["walk", "run"]);
+    assert!(String::from_utf8_lossy(&listed.stderr).contains(said));
+    // A translated clip stays one in a library.
+    assert!(rototoon(&["style", "library", "add", to, out.to_str().unwrap(), "--replace"]).status.success());
+    let kept = std::fs::read_to_string(shelf.join("old-run.clip.json")).unwrap();
+    assert!(kept.contains("\"deviation\""));
+    let listed = rototoon(&["style", "library", "list", to, "--character", "old"]);
+    let said = String::from_utf8_lossy(&listed.stderr);
+    assert!(
+        said.contains("old-run.clip.json: made by translation, not captured") && said.lines().count() == 2,
+        "{said}"
+    );
+}

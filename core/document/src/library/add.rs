@@ -6,19 +6,25 @@
 //! lost; an entry whose file is damaged may be one.
 
 use super::index::ENDING;
-use super::{AddError, Entry, INDEX, Index, Library, Taken, Trouble, one_clip};
+use super::{AddError, Content, Entry, INDEX, Index, Library, Taken, Trouble};
 use crate::clips::Clips;
 use crate::output::{WriteError, write_whole};
+use rototoon_base::file;
 use rototoon_base::scene::Clip;
 use serde_json::Map;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// File name of the lock. The file stays: if it were removed, two processes could hold two locks.
 const LOCK: &str = "library.lock";
+
+/// Rights on the lock's file: it is empty, and who changes the library is decided by the rights on the folder.
+#[cfg(unix)]
+const FOR_ALL: u32 = 0o666;
 
 /// Longest time to wait for another process. Adding a clip takes milliseconds.
 const WAIT: Duration = Duration::from_secs(30);
@@ -52,6 +58,8 @@ pub struct Added {
     pub replaced: Vec<Entry>,
     /// Path of a damaged index that was set aside.
     pub aside: Option<PathBuf>,
+    /// Whether the disk knows no locks, so that nothing kept other programs from changing the library at the same time.
+    pub unlocked: bool,
 }
 
 impl Library {
@@ -65,10 +73,11 @@ impl Library {
     pub fn add(&mut self, added: &[Addition<'_>], existing: Existing) -> Result<Added, AddError> {
         let folder = self.folder.clone();
         fs::create_dir_all(&folder).map_err(|source| WriteError { path: folder.clone(), source })?;
-        let _lock = lock(&folder.join(LOCK))?;
+        let lock = lock(&folder.join(LOCK))?;
         // Another process may have added clips since this library was opened.
         *self = Self::open(&folder);
         changeable(&self.index, folder.join(INDEX))?;
+        self.correct();
         let clips = || added.iter().flat_map(|one| one.clips.clips.iter().map(move |clip| (clip, one)));
         once(clips().map(|(clip, _)| clip))?;
         let replaced: Vec<Entry> = clips().filter_map(|(clip, _)| self.existing(clip)).cloned().collect();
@@ -81,17 +90,29 @@ impl Library {
         }
         let aside = if self.index.damaged() { set_aside(&folder)? } else { None };
         write_whole(&folder.join(INDEX), self.index.text().as_bytes())?;
-        Ok(Added { replaced, aside })
+        Ok(Added { replaced, aside, unlocked: lock.is_none() })
     }
 
-    /// The entry of a clip of the same character and motion whose file is there.
+    /// Brings the entries to what their files say: names may have been changed in a file. An entry whose file has the clip of another
+    /// one stays as it is, with the fields that others have added to it.
+    fn correct(&mut self) {
+        let found = self.read_files(self.index.entries.iter()).clips;
+        let mut found: BTreeMap<String, Entry> =
+            found.into_iter().map(|(entry, _)| (entry.file.clone(), entry)).collect();
+        for entry in &mut self.index.entries {
+            *entry = found.remove(&entry.file).unwrap_or_else(|| entry.clone());
+        }
+    }
+
+    /// The entry of a clip of the same character and motion whose file has it, or may have it.
     fn existing(&self, clip: &Clip) -> Option<&Entry> {
-        self.index.entries.iter().find(|entry| of_same(entry, clip) && is_there(&self.folder.join(&entry.file)))
+        let (k, content) = self.entry_of(clip)?;
+        (content != Content::Other).then(|| &self.index.entries[k])
     }
 
     /// Writes the file of a clip, and its entry in memory.
     fn put(&mut self, clip: &Clip, fps: f64, source: &str) -> Result<(), WriteError> {
-        let known = self.index.entries.iter().position(|entry| of_same(entry, clip));
+        let known = self.entry_of(clip).map(|(k, _)| k);
         let own = known.map(|k| self.index.entries[k].file.clone()).filter(|file| self.may_replace(file, clip));
         let entry = Entry {
             file: own.unwrap_or_else(|| self.free_name(clip)),
@@ -112,10 +133,7 @@ impl Library {
     /// Whether a file has a clip of the same character and motion, or does not exist.
     fn may_replace(&self, file: &str, clip: &Clip) -> bool {
         let path = self.folder.join(file);
-        match one_clip(&path) {
-            Ok((found, _)) => found.character == clip.character && found.motion == clip.motion,
-            Err(_) => !is_there(&path),
-        }
+        !is_there(&path) || Content::of(&path, clip) == Content::Same
     }
 
     /// A free file name made of letters and digits of both labels, with a number if necessary.
@@ -127,10 +145,6 @@ impl Library {
         let numbered = (2..).map(|n| format!("{stem}-{n}{ENDING}"));
         std::iter::once(format!("{stem}{ENDING}")).chain(numbered).find(|name| !taken(name)).unwrap_or_default()
     }
-}
-
-fn of_same(entry: &Entry, clip: &Clip) -> bool {
-    entry.character == clip.character && entry.motion == clip.motion
 }
 
 /// Refuses clips of which one would replace another.
@@ -181,22 +195,39 @@ fn changeable(index: &Index, path: PathBuf) -> Result<(), AddError> {
     }
 }
 
-/// Locks a file. The lock ends when the file is closed, also if the process is killed.
-fn lock(path: &Path) -> Result<File, AddError> {
+/// Locks a file. The lock ends when the file is closed, also if the process is killed. `None` on a disk that knows no locks.
+fn lock(path: &Path) -> Result<Option<File>, AddError> {
     let failed = |source| WriteError { path: path.to_owned(), source };
-    let file = OpenOptions::new().create(true).truncate(false).write(true).open(path).map_err(failed)?;
+    let file = open_for_all(path).map_err(failed)?;
     let start = Instant::now();
     loop {
         match file.try_lock() {
-            Ok(()) => return Ok(file),
+            Ok(()) => return Ok(Some(file)),
             Err(TryLockError::WouldBlock) if start.elapsed() < WAIT => sleep(Duration::from_millis(10)),
             Err(TryLockError::WouldBlock) => {
                 return Err(AddError::Locked { path: path.to_owned(), seconds: WAIT.as_secs() });
             }
-            // A disk that knows no locks, such as some of the network.
-            Err(TryLockError::Error(error)) if error.kind() == std::io::ErrorKind::Unsupported => return Ok(file),
+            Err(TryLockError::Error(error)) if file::knows_no_locks(&error) => return Ok(None),
             Err(TryLockError::Error(error)) => return Err(failed(error).into()),
         }
+    }
+}
+
+/// Opens the file of a lock, which everybody may write who may write into the folder, whatever the mask of whoever came first.
+/// A file that must not be written is opened for reading: most disks lock it all the same.
+fn open_for_all(path: &Path) -> io::Result<File> {
+    match OpenOptions::new().create(true).truncate(false).write(true).open(path) {
+        Ok(file) => {
+            #[cfg(unix)]
+            {
+                use std::os::unix::fs::PermissionsExt;
+                // Only the owner may do this, and who is not has opened it already.
+                let _ = file.set_permissions(fs::Permissions::from_mode(FOR_ALL));
+            }
+            Ok(file)
+        }
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map_err(|_| error),
+        Err(error) => Err(error),
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! The index `library.json` lists `{"file", "character", "motion", "frames", "fps", "source"}` for each clip. The file
 //! of a clip is a file of clips ([`super::clips`]) with one clip. The index makes searching fast; the files are
-//! authoritative. Clip files that the index does not list are found as well, so a file may simply be copied into the
-//! folder.
+//! authoritative: where clips are read, entries get the names, the length and the rate of their files. Clip files that the index
+//! does not list are found as well, so a file may simply be copied into the folder. Hidden files are no clips.
 //!
 //! **Damage.** A file that is damaged, missing or of a later version does not affect the others. It is reported as a
 //! [`Trouble`], and the rest is used. Without a usable index the clip files of the folder are read instead.
@@ -38,7 +38,7 @@ use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::scene::Clip;
 use serde::Serialize;
 use serde_json::Map;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -60,6 +60,40 @@ pub struct Entry {
     pub fps: f64,
     /// Source of the clip; may be empty.
     pub source: String,
+}
+
+impl Entry {
+    /// Whether character and motion contain these words, ignoring case. An empty word is in every name.
+    pub fn has(&self, character: &str, motion: &str) -> bool {
+        let contains = |name: &str, word: &str| name.to_lowercase().contains(&word.to_lowercase());
+        contains(&self.character, character) && contains(&self.motion, motion)
+    }
+
+    fn is_of(&self, clip: &Clip) -> bool {
+        self.character == clip.character && self.motion == clip.motion
+    }
+}
+
+/// What the files of entries have. No two clips have the same character and motion.
+#[derive(Clone, Debug, Default)]
+pub struct Checked {
+    /// The clips, each with its entry as the file is.
+    pub clips: Vec<(Entry, Clip)>,
+    /// The entries whose files cannot be used, with the reason.
+    pub unusable: Vec<(Entry, Trouble)>,
+}
+
+impl Checked {
+    /// The clips at one frame rate: styles are learned frame by frame.
+    pub fn at_rate(self, fps: f64) -> Clips {
+        let clips = self.clips.into_iter().map(|(entry, clip)| clip.at_rate(entry.fps, fps)).collect();
+        Clips { clips, fps }
+    }
+
+    /// The reasons why files cannot be used.
+    pub fn troubles(&self) -> impl Iterator<Item = &Trouble> {
+        self.unusable.iter().map(|(_, trouble)| trouble)
+    }
 }
 
 /// An open library.
@@ -88,57 +122,72 @@ impl Library {
         &self.index.entries
     }
 
-    /// The clips whose character and motion contain these words, ignoring case. An empty word matches all.
-    pub fn search<'a>(&'a self, character: &str, motion: &str) -> impl Iterator<Item = &'a Entry> {
-        let (character, motion) = (character.to_lowercase(), motion.to_lowercase());
-        self.index.entries.iter().filter(move |entry| {
-            entry.character.to_lowercase().contains(&character) && entry.motion.to_lowercase().contains(&motion)
-        })
+    /// The clips whose character and motion contain these words by the index alone, ignoring case. An empty word matches all.
+    pub fn search<'a>(&'a self, character: &'a str, motion: &'a str) -> impl Iterator<Item = &'a Entry> {
+        self.index.entries.iter().filter(move |entry| entry.has(character, motion))
     }
 
-    /// Reads the clips of some entries as they are. Files that cannot be used are reported and left out.
-    pub fn read<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<Clip>, Vec<Trouble>) {
-        self.read_all(entries, |clip, _| clip)
+    /// Reads all clip files, and returns those that are asked for by what the file or the index says.
+    pub fn checked(&self, asked: impl Fn(&Entry) -> bool) -> Checked {
+        let mut all = self.read_files(self.index.entries.iter());
+        all.clips.retain(|(entry, _)| asked(entry));
+        all.unusable.retain(|(entry, trouble)| asked(entry) || matches!(trouble, Trouble::Twice { .. }));
+        all
     }
 
-    /// As [`Library::read`], with all clips at one frame rate: styles are learned frame by frame.
-    pub fn read_at<'a>(&self, entries: impl Iterator<Item = &'a Entry>, fps: f64) -> (Vec<Clip>, Vec<Trouble>) {
-        self.read_all(entries, |clip, own| clip.at_rate(own, fps))
+    /// The clips with exactly these names; an empty name is any. Only their own files are read, if the index has them right.
+    pub fn named(&self, character: &str, motion: &str) -> Checked {
+        let is = |asked: &str, own: &str| asked.is_empty() || asked == own;
+        let is = |entry: &Entry| is(character, &entry.character) && is(motion, &entry.motion);
+        if !character.is_empty() && !motion.is_empty() {
+            let mut found = self.read_files(self.index.entries.iter().filter(|entry| is(entry)));
+            found.clips.retain(|(entry, _)| is(entry));
+            if !found.clips.is_empty() {
+                return found;
+            }
+        }
+        self.checked(is)
     }
 
-    /// Some entries as their files are, with their clips, without those whose files cannot be used. These are reported.
-    pub fn checked<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> (Vec<(Entry, Clip)>, Vec<Trouble>) {
-        let (mut good, mut troubles) = (Vec::new(), Vec::new());
+    /// Reads the files of some entries. Of files with one clip, that one is used which the index has under the clip's names, else the
+    /// one whose name the library gives.
+    fn read_files<'a>(&self, entries: impl Iterator<Item = &'a Entry>) -> Checked {
         let entries: Vec<&Entry> = entries.collect();
         let read: Vec<_> = entries.par_iter().map(|entry| one_clip(&self.folder.join(&entry.file))).collect();
+        let mut done = Checked::default();
+        let mut used: BTreeMap<(String, String), ((bool, usize), String)> = BTreeMap::new();
         for (entry, result) in entries.into_iter().zip(read) {
-            match result {
-                Ok((clip, fps)) => {
-                    let (character, motion) = (clip.character.clone(), clip.motion.clone());
-                    let found = Entry { character, motion, frames: clip.postures.len(), fps, ..entry.clone() };
-                    good.push((found, clip));
+            let (clip, fps) = match result {
+                Ok(read) => read,
+                Err(trouble) => {
+                    done.unusable.push((entry.clone(), trouble));
+                    continue;
                 }
-                Err(trouble) => troubles.push(trouble),
+            };
+            let rank = (!entry.is_of(&clip), add::strangeness(&entry.file, &clip));
+            let best =
+                used.entry((clip.character.clone(), clip.motion.clone())).or_insert_with(|| (rank, entry.file.clone()));
+            if rank < best.0 {
+                *best = (rank, entry.file.clone());
             }
+            let (character, motion) = (clip.character.clone(), clip.motion.clone());
+            let found = Entry { character, motion, frames: clip.postures.len(), fps, ..entry.clone() };
+            done.clips.push((found, clip));
         }
-        (good, troubles)
+        let twin = |(entry, _): &mut (Entry, Clip)| {
+            used.get(&(entry.character.clone(), entry.motion.clone())).is_some_and(|(_, file)| *file != entry.file)
+        };
+        for (entry, _) in done.clips.extract_if(.., twin) {
+            let first = &used[&(entry.character.clone(), entry.motion.clone())].1;
+            let trouble = self.twice(&entry, first.clone());
+            done.unusable.push((entry, trouble));
+        }
+        done
     }
 
-    fn read_all<'a>(
-        &self,
-        entries: impl Iterator<Item = &'a Entry>,
-        made: impl Fn(Clip, f64) -> Clip,
-    ) -> (Vec<Clip>, Vec<Trouble>) {
-        let (mut clips, mut troubles) = (Vec::new(), Vec::new());
-        let files: Vec<PathBuf> = entries.map(|entry| self.folder.join(&entry.file)).collect();
-        let read: Vec<_> = files.par_iter().map(|file| one_clip(file)).collect();
-        for result in read {
-            match result {
-                Ok((clip, own)) => clips.push(made(clip, own)),
-                Err(trouble) => troubles.push(trouble),
-            }
-        }
-        (clips, troubles)
+    fn twice(&self, entry: &Entry, first: String) -> Trouble {
+        let (character, motion) = (entry.character.clone(), entry.motion.clone());
+        Trouble::Twice { origin: self.folder.join(&entry.file).display().to_string(), first, character, motion }
     }
 
     /// The frame rate that most of some entries have, and the highest of several; 25 without entries.
@@ -155,39 +204,63 @@ impl Library {
         let known: BTreeSet<&str> = self.index.entries.iter().map(|entry| entry.file.as_str()).collect();
         let mut names: Vec<String> = listed
             .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-            .filter(|name| index::is_clip_file(name) && !known.contains(name.as_str()))
+            .filter(|name| index::is_clip_file(name) && !is_hidden(name) && !known.contains(name.as_str()))
             .collect();
         names.sort();
-        let paths: Vec<PathBuf> = names.iter().map(|name| self.folder.join(name)).collect();
-        let read: Vec<_> = paths.par_iter().map(|path| one_clip(path)).collect();
-        let mut found: Vec<(String, PathBuf, Clip, f64)> = Vec::new();
-        for ((file, path), result) in names.into_iter().zip(paths).zip(read) {
+        let read: Vec<_> = names.par_iter().map(|name| one_clip(&self.folder.join(name))).collect();
+        let mut found: Vec<(String, Clip, f64)> = Vec::new();
+        for (file, result) in names.into_iter().zip(read) {
             match result {
-                Ok((clip, fps)) => found.push((file, path, clip, fps)),
+                Ok((clip, fps)) => found.push((file, clip, fps)),
                 Err(trouble) => self.index.troubles.push(trouble),
             }
         }
         // Of files with one clip the one with the library's own name counts, whatever copies are called.
-        found.sort_by_key(|(file, _, clip, _)| add::strangeness(file, clip));
-        for (file, path, clip, fps) in found {
+        found.sort_by_key(|(file, clip, _)| add::strangeness(file, clip));
+        for (file, clip, fps) in found {
+            let first = self.entry_of(&clip).filter(|(_, content)| *content == Content::Same);
+            let first = first.map(|(k, _)| self.index.entries[k].file.clone());
             let Clip { character, motion, postures, .. } = clip;
-            match self.index.entries.iter().find(|entry| entry.character == character && entry.motion == motion) {
-                Some(first) => {
-                    let first = first.file.clone();
-                    self.index.troubles.push(Trouble::Twice {
-                        origin: path.display().to_string(),
-                        first,
-                        character,
-                        motion,
-                    });
-                }
-                None => {
-                    let (frames, source) = (postures.len(), String::new());
-                    self.index.push(Entry { file, character, motion, frames, fps, source }, Map::new());
-                }
+            let entry = Entry { file, character, motion, frames: postures.len(), fps, source: String::new() };
+            match first {
+                Some(first) => self.index.troubles.push(self.twice(&entry, first)),
+                None => self.index.push(entry, Map::new()),
             }
         }
     }
+
+    /// The index of the entry of a clip's character and motion, and what its file has; of several that which has it.
+    fn entry_of(&self, clip: &Clip) -> Option<(usize, Content)> {
+        let of_same = self.index.entries.iter().enumerate().filter(|(_, entry)| entry.is_of(clip));
+        let read = of_same.map(|(k, entry)| (k, Content::of(&self.folder.join(&entry.file), clip)));
+        read.min_by_key(|(_, content)| *content)
+    }
+}
+
+/// What the file of an entry has, beside the clip whose names the entry has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Content {
+    /// A clip of these names.
+    Same,
+    /// Something that cannot be read, and may be a clip of these names.
+    Unreadable,
+    /// Another clip, or there is no such file.
+    Other,
+}
+
+impl Content {
+    fn of(path: &Path, clip: &Clip) -> Self {
+        match one_clip(path) {
+            Ok((found, _)) if found.character == clip.character && found.motion == clip.motion => Self::Same,
+            Err(_) if fs::symlink_metadata(path).is_ok() => Self::Unreadable,
+            _ => Self::Other,
+        }
+    }
+}
+
+/// Whether systems hide a file of this name. A Mac keeps more about a file `a` in `._a` on disks of other systems.
+fn is_hidden(name: &str) -> bool {
+    name.starts_with('.')
 }
 
 fn one_clip(path: &Path) -> Result<(Clip, f64), Trouble> {

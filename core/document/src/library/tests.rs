@@ -11,6 +11,13 @@ fn put(library: &mut Library, clip: &Clip, fps: f64, source: &str) -> Result<Add
     library.add(&[Addition { clips: &clips, source }], Existing::Replace)
 }
 
+/// The clips of some words at their own rates, and what is wrong.
+fn read(library: &Library, character: &str, motion: &str) -> (Vec<Clip>, Vec<Trouble>) {
+    let found = library.checked(|entry| entry.has(character, motion));
+    let troubles = found.troubles().cloned().collect();
+    (found.clips.into_iter().map(|(_, clip)| clip).collect(), troubles)
+}
+
 fn filled() -> (tempfile::TempDir, Library) {
     let folder = tempfile::tempdir().unwrap();
     let mut library = Library::open(&folder.path().join("clips"));
@@ -28,7 +35,7 @@ fn what_is_added_is_found_again() {
     assert_eq!(library.entries().len(), 3);
     assert_eq!((library.entries()[0].frames, library.entries()[0].source.as_str()), (3, "shot 7"));
     assert_eq!(library.search("", "WALK").count(), 2);
-    let (clips, troubles) = library.read(library.search("ann", "run"));
+    let (clips, troubles) = read(&library, "ann", "run");
     assert_eq!((clips, troubles), (vec![clip("Ann", "run", 2)], vec![]));
 }
 
@@ -46,12 +53,12 @@ fn of_a_damaged_library_the_rest_is_used() {
     let folder = folder.path().join("clips");
     fs::write(folder.join(&library.entries()[1].file), "{").unwrap();
     let reopened = Library::open(&folder);
-    let (clips, troubles) = reopened.read(reopened.entries().iter());
+    let (clips, troubles) = read(&reopened, "", "");
     assert_eq!((clips.len(), troubles.len()), (2, 1));
     assert!(troubles[0].to_string().contains("ann-run.clip.json: found text that is not JSON"), "{}", troubles[0]);
     let later = "{\"rototoon_clips\": 9, \"clips\": [], \"more\": {}}";
     fs::write(folder.join(&library.entries()[1].file), later).unwrap();
-    let (clips, troubles) = reopened.read(reopened.entries().iter());
+    let (clips, troubles) = read(&reopened, "", "");
     assert_eq!(clips.iter().map(|clip| clip.character.as_str()).collect::<Vec<_>>(), ["Ann", "Bo/b"]);
     assert!(troubles[0].to_string().contains("found version 9, expected 2 or less"), "{}", troubles[0]);
     for (index, said) in
@@ -106,10 +113,10 @@ fn entries_without_a_usable_file_are_reported() {
     fs::remove_file(folder.join(&library.entries()[1].file)).unwrap();
     Clips { clips: vec![clip("Bo/b", "walk", 7)], fps: 12.0 }.save(&folder.join(&library.entries()[2].file)).unwrap();
     let library = Library::open(&folder);
-    let (good, troubles) = library.checked(library.entries().iter());
-    let good: Vec<Entry> = good.into_iter().map(|(entry, _)| entry).collect();
+    let found = library.checked(|_| true);
+    let good: Vec<&Entry> = found.clips.iter().map(|(entry, _)| entry).collect();
     assert_eq!(good.iter().map(|e| (e.motion.as_str(), e.frames, e.fps)).collect::<Vec<_>>(), [("walk", 7, 12.0)]);
-    let said: Vec<String> = troubles.iter().map(ToString::to_string).collect();
+    let said: Vec<String> = found.troubles().map(ToString::to_string).collect();
     assert!(
         said.len() == 2 && said[0].contains("ann-walk.clip.json") && said[1].contains("ann-run.clip.json"),
         "{said:?}"
@@ -124,12 +131,12 @@ fn clips_of_several_frame_rates_are_read_at_one() {
         put(&mut library, &clip("Ann", motion, frames), fps, "").unwrap();
     }
     let counts = |fps: f64| {
-        let (clips, troubles) = library.read_at(library.entries().iter(), fps);
-        assert!(troubles.is_empty());
-        clips.iter().map(|clip| clip.postures.len()).collect::<Vec<_>>()
+        let found = library.checked(|_| true);
+        assert!(found.unusable.is_empty());
+        found.at_rate(fps).clips.iter().map(|clip| clip.postures.len()).collect::<Vec<_>>()
     };
     assert_eq!((counts(24.0), counts(48.0)), (vec![5, 5, 5, 5], vec![9, 9, 9, 9]));
-    assert_eq!(library.read(library.entries().iter()).0[1].postures.len(), 9, "as it is");
+    assert_eq!(read(&library, "", "").0[1].postures.len(), 9, "as it is");
     assert_eq!(Library::usual_rate(library.entries().iter()), 48.0);
     assert_eq!(Library::usual_rate(library.search("", "walk")), 24.0);
     assert_eq!(Library::usual_rate(library.search("", "swim")), 25.0);
@@ -236,7 +243,7 @@ fn only_the_file_of_the_same_clip_is_replaced() {
         put(&mut library, &clip("Ann", "walk", 7), 12.0, "").unwrap();
         assert_eq!(fs::read(&other).unwrap(), content);
         let reopened = Library::open(&folder);
-        let (clips, _) = reopened.read(reopened.search("ann", "walk"));
+        let (clips, _) = read(&reopened, "ann", "walk");
         assert_eq!(clips, [clip("Ann", "walk", 7)]);
     }
 }
@@ -345,7 +352,7 @@ fn of_many_that_add_the_same_clip_at_once_one_does() {
     });
     let added: Vec<usize> = outcomes.into_iter().flatten().collect();
     let library = Library::open(folder.path());
-    assert_eq!(library.read(library.entries().iter()).0, [clip("Ann", "walk", added[0])]);
+    assert_eq!(read(&library, "", "").0, [clip("Ann", "walk", added[0])]);
     assert_eq!(added.len(), 1);
 }
 
@@ -354,4 +361,101 @@ fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut found: Vec<_> = fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
     found.sort();
     found.into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect()
+}
+
+/// Files of `filled`: of Ann's walk and run and of Bo's walk, with an entry for each.
+fn mixed_up(change: impl FnOnce(&Path)) -> (tempfile::TempDir, Library) {
+    let (folder, _) = filled();
+    let path = folder.path().join("clips");
+    change(&path);
+    let library = Library::open(&path);
+    (folder, library)
+}
+
+fn names(found: &Checked) -> Vec<(&str, &str, &str)> {
+    found.clips.iter().map(|(e, _)| (e.character.as_str(), e.motion.as_str(), e.file.as_str())).collect()
+}
+
+#[test]
+fn a_file_copied_over_another_is_named_and_the_rest_is_used() {
+    let (folder, mut library) = mixed_up(|path| {
+        fs::copy(path.join("ann-walk.clip.json"), path.join("ann-run.clip.json")).unwrap();
+    });
+    let path = folder.path().join("clips");
+    let found = library.checked(|_| true);
+    assert_eq!(names(&found), [("Ann", "walk", "ann-walk.clip.json"), ("Bo/b", "walk", "bo_b-walk.clip.json")]);
+    let said: Vec<String> = found.troubles().map(ToString::to_string).collect();
+    let twin = path.join("ann-run.clip.json").display().to_string();
+    assert_eq!(
+        said,
+        [format!(
+            "{twin}: found a second clip of character \"Ann\" and motion \"walk\"; the clip in ann-walk.clip.json is used"
+        )]
+    );
+    assert_eq!(names(&library.named("Ann", "walk")), [("Ann", "walk", "ann-walk.clip.json")]);
+    assert!(library.named("Ann", "run").clips.is_empty());
+    // The run is not there, so it may be added, and the file that was copied stays.
+    let again = Clips { clips: vec![clip("Ann", "run", 5)], fps: 12.0 };
+    assert_eq!(library.add(&[Addition { clips: &again, source: "" }], Existing::Refuse).unwrap(), Added::default());
+    let found = Library::open(&path).checked(|entry| entry.has("ann", ""));
+    assert_eq!(names(&found), [("Ann", "walk", "ann-walk.clip.json"), ("Ann", "run", "ann-run-2.clip.json")]);
+    assert!(path.join("ann-run.clip.json").is_file());
+}
+
+#[test]
+fn a_character_renamed_in_a_file_is_found_by_its_new_name_and_not_added_twice() {
+    let (folder, mut library) = mixed_up(|path| {
+        Clips { clips: vec![clip("Charles", "walk", 6)], fps: 24.0 }.save(&path.join("ann-walk.clip.json")).unwrap();
+    });
+    let expected = [("Charles", "walk", "ann-walk.clip.json")];
+    assert_eq!(names(&library.named("Charles", "walk")), expected);
+    assert_eq!(names(&library.checked(|entry| entry.has("charles", ""))), expected);
+    assert!(library.named("Ann", "walk").clips.is_empty());
+    let again = Clips { clips: vec![clip("Charles", "walk", 9)], fps: 12.0 };
+    let add = |library: &mut Library, existing| library.add(&[Addition { clips: &again, source: "new" }], existing);
+    assert!(matches!(add(&mut library, Existing::Refuse), Err(AddError::Taken(_))));
+    let done = add(&mut library, Existing::Replace).unwrap();
+    assert_eq!(
+        done.replaced.iter().map(|e| (e.frames, e.fps, e.source.as_str())).collect::<Vec<_>>(),
+        [(6, 24.0, "shot 7")]
+    );
+    let library = Library::open(&folder.path().join("clips"));
+    assert_eq!(library.entries().len(), 3);
+    assert_eq!((library.entries()[0].character.as_str(), library.entries()[0].frames), ("Charles", 9));
+}
+
+#[test]
+fn of_two_files_with_one_clip_that_of_the_index_is_used_however_they_are_read() {
+    let (folder, mut library) = mixed_up(|path| {
+        let text = fs::read_to_string(path.join(INDEX)).unwrap();
+        fs::rename(path.join("ann-run.clip.json"), path.join("mine.clip.json")).unwrap();
+        fs::write(path.join(INDEX), text.replace("ann-run.clip.json", "mine.clip.json").replace("ann-walk", "ann-run"))
+            .unwrap();
+        Clips { clips: vec![clip("Ann", "run", 8)], fps: 12.0 }.save(&path.join("ann-run.clip.json")).unwrap();
+        fs::remove_file(path.join("ann-walk.clip.json")).unwrap();
+    });
+    let expected = [("Ann", "run", "mine.clip.json")];
+    assert_eq!(names(&library.named("Ann", "run")), expected);
+    assert_eq!(names(&library.checked(|entry| entry.has("ann", "run"))), expected);
+    assert_eq!(names(&library.named("", "run")), expected);
+    put(&mut library, &clip("Ann", "run", 1), 12.0, "").unwrap();
+    assert_eq!(read(&Library::open(&folder.path().join("clips")), "ann", "run").0, [clip("Ann", "run", 1)]);
+}
+
+#[test]
+fn files_that_other_systems_hide_are_no_clips() {
+    let (_folder, library) = mixed_up(|path| fs::write(path.join("._ann-walk.clip.json"), b"\0\x05\x16\x07").unwrap());
+    assert_eq!((library.troubles(), library.entries().len()), (&[][..], 3));
+}
+
+#[cfg(unix)]
+#[test]
+fn everybody_who_may_write_into_the_folder_may_add() {
+    use std::os::unix::fs::PermissionsExt;
+    let (folder, mut library) = filled();
+    let lock = folder.path().join("clips").join("library.lock");
+    assert_eq!(fs::metadata(&lock).unwrap().permissions().mode() & 0o777, 0o666, "whatever the mask is");
+    // Another user made the file, with an older version.
+    fs::set_permissions(&lock, fs::Permissions::from_mode(0o444)).unwrap();
+    put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap();
 }

@@ -142,10 +142,10 @@ fn the_captured_clip_is_the_true_one_and_goes_through_a_library() {
         let clips = Clips { clips: vec![clip.clone()], fps: 24.0 };
         library.add(&[Addition { clips: &clips, source: "" }], Existing::Refuse).unwrap();
         let library = Library::open(folder.path());
-        let (read, troubles) = library.read(library.entries().iter());
-        assert!(troubles.is_empty(), "{troubles:?}");
+        let read = library.checked(|_| true);
+        assert!(read.unusable.is_empty(), "{:?}", read.unusable);
         let text = |clip: &Clip| Clips { clips: vec![clip.clone()], fps: 24.0 }.text();
-        assert_eq!(read.iter().map(text).collect::<Vec<_>>(), [text(&clip)]);
+        assert_eq!(read.clips.iter().map(|(_, clip)| text(clip)).collect::<Vec<_>>(), [text(&clip)]);
     }
 }
 

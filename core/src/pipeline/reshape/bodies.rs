@@ -127,7 +127,7 @@ pub(super) fn of(
     if bodies.is_empty() {
         return Err(wrong(format!("parts: found no closed contour on frame {frame}, expected at least one")));
     }
-    let scenery = put_loose(&mut bodies, (parts, frame), set, motion)?;
+    let scenery = put_loose(&mut bodies, parts, set, motion)?;
     let loose = lines::put(&mut bodies, (parts, strokes, frame), set, &scenery)?;
     Ok((bodies, loose))
 }
@@ -135,14 +135,14 @@ pub(super) fn of(
 /// Gives the bodies that no limb carries what they follow. Returns on what lines may lie.
 fn put_loose<'a>(
     bodies: &mut [Body],
-    (parts, frame): (&[Part], FrameNumber),
+    parts: &[Part],
     set: &LimbSet,
     motion: &'a Motion,
 ) -> Result<Scenery<'a>, PipelineError> {
     let host = |body: &Body| Host {
         name: body.name.clone(),
         outline: body.outline.clone(),
-        depth: parts[body.part].depth_at(frame),
+        depth: parts[body.part].depth,
         limb: loose::is_limb(set, &body.name),
         loose: body.follows.is_some(),
         given: body.follows.clone().filter(|given| !matches!(given, Given::Part(_))),
@@ -162,8 +162,7 @@ fn put_loose<'a>(
         let next = waiting.iter().position(|k| !waits(k)).unwrap_or(0);
         let k = waiting.remove(next);
         let asked = loose::asked(set, &bodies[k].name);
-        let what =
-            asked.clone().unwrap_or_else(|| scenery.of_part(&bodies[k].outline, parts[bodies[k].part].depth_at(frame)));
+        let what = asked.clone().unwrap_or_else(|| scenery.of_part(&bodies[k].outline, parts[bodies[k].part].depth));
         follow(bodies, k, &what, &scenery)?;
         bodies[k].given = asked.is_none().then_some(what);
         scenery.hosts.push(host(&bodies[k]));

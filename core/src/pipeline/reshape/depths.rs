@@ -46,7 +46,8 @@ pub(super) fn of(
     let infer = |frame| infer(&own, &marks, &kin, frame).map_err(|error| failed(&error, set));
     let by_frame = frames.clone().map(infer).collect::<Result<Vec<_>, _>>()?;
     let rounded = |d: f64| (d * SCALE).round() / SCALE;
-    let by_part = (0..parts.len()).map(|k| by_frame.iter().map(|all| rounded(all[k])).collect()).collect();
+    let written = |k: usize, depth: f64| if depth == own[k] { depth } else { rounded(depth) };
+    let by_part = (0..parts.len()).map(|k| by_frame.iter().map(|all| written(k, all[k])).collect()).collect();
     let mut passed: BTreeMap<(usize, usize), Vec<FrameNumber>> = BTreeMap::new();
     for (frame, found) in frames.zip(&by_frame) {
         for pair in changed(&own, found, &marks, frame) {

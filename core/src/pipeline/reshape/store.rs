@@ -16,13 +16,13 @@ type Lines = BTreeMap<usize, Vec<Vec<Point>>>;
 
 /// Puts the complete result into the document. `bodies` and `moved` have the same order. `loose` are the lines that go
 /// with no body, with their points on every frame. `strokes` are those of the
-/// drawing at rest. `depths` are by part and frame of `footage`, which becomes the document's footage.
+/// drawing on its frame at rest. `depths` are by part and frame of `footage`, which becomes the document's footage.
 pub(super) fn store(
     document: &mut Document,
     footage: Footage,
     (bodies, moved): (&[Body], &[Moved]),
     loose: &[(LooseLine, Vec<Vec<Point>>)],
-    strokes: &[DrawnStroke],
+    (strokes, rest): (&[DrawnStroke], FrameNumber),
     depths: &[Vec<f64>],
 ) {
     let frames: Vec<FrameNumber> = (footage.first..=footage.last).collect();
@@ -34,12 +34,10 @@ pub(super) fn store(
     }
     lines.extend(loose.iter().map(|(line, of_frames)| (line.number, of_frames.clone())));
     for (number, of_frames) in lines.range(strokes.len()..) {
-        let part = &mut parts[open[number - strokes.len()]];
-        part.curves.clear();
-        set_tracks(part, frames.iter().copied().zip(of_frames.iter().cloned()).collect());
+        put_line(&mut parts[open[number - strokes.len()]], rest, &frames, of_frames);
     }
     for (part, depths) in parts.iter_mut().zip(depths) {
-        part.depth = depths.first().copied().unwrap_or(part.depth);
+        // The part's own depth stays the artist's, from which the drawing may be reshaped again.
         let other = frames.iter().zip(depths).filter(|(_, depth)| **depth != part.depth);
         part.depths = other.map(|(frame, depth)| (*frame, *depth)).collect();
     }
@@ -66,6 +64,28 @@ fn put_body(part: &mut Part, body: &Body, moved: &Moved, frames: &[FrameNumber],
         }
         for &(number, length) in &body.strokes {
             lines.entry(number).or_default().push(take(length));
+        }
+    }
+    set_tracks(part, tracks);
+}
+
+/// Sets the tracks and the snapped paths of an open contour. Its points on a frame are followed by those of the paths that it has at
+/// rest.
+fn put_line(part: &mut Part, rest: FrameNumber, frames: &[FrameNumber], of_frames: &[Vec<Point>]) {
+    let lengths: Vec<usize> = part.complete_curves(rest).into_iter().flatten().map(Vec::len).collect();
+    part.curves.clear();
+    let mut tracks = BTreeMap::new();
+    for (&frame, points) in frames.iter().zip(of_frames) {
+        let (own, mut left) = points.split_at(points.len() - lengths.iter().sum::<usize>());
+        tracks.insert(frame, own.to_vec());
+        let path = |&length: &usize| {
+            let (path, after) = left.split_at(length);
+            left = after;
+            path.to_vec()
+        };
+        let paths: Vec<Vec<Point>> = lengths.iter().map(path).collect();
+        if !paths.is_empty() {
+            part.curves.insert(frame, paths);
         }
     }
     set_tracks(part, tracks);

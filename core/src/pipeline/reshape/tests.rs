@@ -136,6 +136,37 @@ fn a_drawing_follows_a_clip_of_another_size() {
 }
 
 #[test]
+fn snapped_lines_of_open_contours_go_with_them() {
+    let mut document = figure("");
+    // A belt on the body, and a line of the ground that lies on no part.
+    add_line(&mut document, "belt", &[Point::new(44.0, 50.0), Point::new(50.0, 52.0), Point::new(56.0, 50.0)]);
+    add_line(&mut document, "ground", &[Point::new(5.0, 110.0), Point::new(100.0, 110.0)]);
+    let mut drawn = Vec::new();
+    for part in document.scene.parts.iter_mut().filter(|part| part.name == "belt" || part.name == "ground") {
+        let key = part.keys[&0].clone();
+        let path = |ends: &[Point]| vec![ends[0], ends[0].midpoint(ends[1]) + Point::new(0.0, 1.0), ends[1]];
+        drawn.push(key.windows(2).map(path).collect::<Vec<_>>());
+        part.curves.insert(0, drawn[drawn.len() - 1].clone());
+    }
+    let motion = waving(&document, 4);
+    reshape(&mut document, &job(&motion), &Silent).unwrap();
+    let lines = document.scene.parts.iter().filter(|part| part.name == "belt" || part.name == "ground");
+    for (part, drawn) in lines.zip(&drawn) {
+        assert_eq!(part.curves.keys().copied().collect::<Vec<_>>(), [0, 1, 2, 3], "{}", part.name);
+        for (frame, paths) in &part.curves {
+            let track = &part.tracks[frame];
+            assert_eq!(track.len(), drawn.len() + 1);
+            let shift = track[0] - drawn[0][0];
+            for (path, own) in paths.iter().zip(drawn) {
+                assert!(path.iter().zip(own).all(|(a, b)| a.distance(*b + shift) < 1e-6), "{} on {frame}", part.name);
+            }
+            assert!(paths.iter().zip(track).all(|(path, end)| path[0].distance(*end) < 1e-6));
+        }
+    }
+    assert!(document.problems().errors().next().is_none());
+}
+
+#[test]
 fn marks_order_parts_by_frame() {
     let mark =
         |front: &str, behind: &str, frames: &str| format!(r#"{{"front": "{front}", "behind": "{behind}"{frames}}}"#);
@@ -151,6 +182,14 @@ fn marks_order_parts_by_frame() {
         assert_eq!(depth(3, frame) > depth(2, frame), frame < 2);
         assert!(depth(0, frame) > depth(2, frame));
     }
+    // The order of the artist stays, so the result may be reshaped again, also without the marks.
+    let orders = |mut document: Document| {
+        reshape(&mut document, &job(&motion), &Silent).unwrap();
+        document.scene.parts.into_iter().map(|part| (part.depth, part.depths)).collect::<Vec<_>>()
+    };
+    assert_eq!(orders(read), document.scene.parts.iter().map(|p| (p.depth, p.depths.clone())).collect::<Vec<_>>());
+    let unmarked = Document::parse(&text.replace("depth_marks", "no_marks"), "unmarked").unwrap();
+    assert_eq!(orders(unmarked), orders(figure("")));
     let contrary = format!(r#", "depth_marks": [{}, {}]"#, mark("arm", "body", ""), mark("body", "arm", ""));
     let error = reshape(&mut figure(&contrary), &job(&motion), &Silent).unwrap_err().to_string();
     assert!(error.starts_with("frame 0: found marks that contradict each other: depth_marks["), "{error}");

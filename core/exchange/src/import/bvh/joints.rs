@@ -10,13 +10,15 @@
 //! VRoid, Character Creator, Motive, Kinect, Blender's Rigify, and the Bandai Namco research data. If names do not tell all key
 //! points, they are read once more without the words with which most of them begin (`Robot_Hips`).
 //!
+//! The pelvis is the joint on which both thighs hang, whatever it is called, or a joint before it that lies at the same place.
 //! Spines have any number of joints, so the chest is found by place: the joint between pelvis and neck that is nearest to the
 //! template's share of the way, or that share itself where none is near. The top of the head is the end of the head's chain; a head
-//! without a joint lies on the way from the neck to that end.
+//! without a joint lies on the way from the neck to that end. Some programs write such an end at the place of its joint, and some
+//! none. Then the end is made anew: it goes on from the neck over the head, and turns with the head.
 //!
 //! [`JointMap`] says what names do not tell.
 
-use super::parse::{Bvh, Node};
+use super::parse::{Bvh, Channel, Node};
 use glam::DVec3;
 use rototoon_base::scene::proportions::HUMAN;
 use rototoon_base::scene::skeleton::{COUNT, NAMES};
@@ -56,6 +58,11 @@ const CHEST_REACH: f64 = 0.2;
 const HEAD_SHARE: f64 = HUMAN[2] / (HUMAN[2] + HUMAN[3]);
 /// How far the top of the head lies beyond a head without an end, in lengths of the neck.
 const HEAD_TOP: f64 = HUMAN[3] / HUMAN[2];
+
+/// Share of the torso within which a named pelvis above the thighs' joint is the pelvis.
+const PELVIS_REACH: f64 = 0.2;
+/// Share of the torso within which two joints lie at the same place.
+const SAME_PLACE: f64 = 0.02;
 
 /// A key point's place among a file's nodes: their weighted sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,9 +161,18 @@ fn shown(value: &Value) -> String {
 }
 
 /// The places of all key points.
-pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// By key point.
+    pub points: [Place; COUNT],
+    /// What a person should know about them, in words.
+    pub notes: Vec<String>,
+}
+
+/// The places of all key points. A head without an end gets one.
+pub fn places(bvh: &mut Bvh, map: &JointMap) -> Result<Places, MapError> {
     let found = Joints::new(&bvh.nodes, 0).places(map)?;
-    let complete = |found: &[Option<Place>; COUNT]| found.iter().all(Option::is_some);
+    let complete = |found: &Found| found.points.iter().all(Option::is_some);
     let found = match common_words(&bvh.nodes) {
         words if words > 0 && !complete(&found) => {
             let shorter = Joints::new(&bvh.nodes, words).places(map)?;
@@ -164,13 +180,22 @@ pub fn places(bvh: &Bvh, map: &JointMap) -> Result<[Place; COUNT], MapError> {
         }
         _ => found,
     };
-    let missing: Vec<&str> = (0..COUNT).filter(|&k| found[k].is_none()).map(|k| NAMES[k]).collect();
+    let missing: Vec<&str> = (0..COUNT).filter(|&k| found.points[k].is_none()).map(|k| NAMES[k]).collect();
     if missing.is_empty() {
+        bvh.nodes.extend(found.end);
         // None is missing, so the default is never used.
-        Ok(found.map(|place| place.unwrap_or(Place(Vec::new()))))
+        Ok(Places { points: found.points.map(|place| place.unwrap_or(Place(Vec::new()))), notes: found.notes })
     } else {
         Err(MapError::Missing { missing: missing.join(", "), known: Joints::new(&bvh.nodes, 0).known() })
     }
+}
+
+/// The places that are known.
+struct Found {
+    points: [Option<Place>; COUNT],
+    /// The end that the head's chain lacks: the node after all others.
+    end: Option<Node>,
+    notes: Vec<String>,
 }
 
 /// The number of words with which most joints begin, at most [`MOST_COMMON`].
@@ -215,7 +240,7 @@ impl<'a> Joints<'a> {
     }
 
     /// The places of the key points that are known.
-    fn places(&self, map: &JointMap) -> Result<[Option<Place>; COUNT], MapError> {
+    fn places(&self, map: &JointMap) -> Result<Found, MapError> {
         let mut found: [Option<Place>; COUNT] = std::array::from_fn(|_| None);
         for (&point, names) in map.0.iter().filter(|(point, _)| **point < COUNT) {
             found[point] = Some(self.given(NAMES[point], names)?);
@@ -223,12 +248,59 @@ impl<'a> Joints<'a> {
         for (point, place) in found.iter_mut().enumerate().filter(|(_, place)| place.is_none()) {
             *place = self.named(NAMES[point]).map(Place::node);
         }
-        self.fill_head(&mut found);
+        let notes = if map.0.contains_key(&0) { None } else { self.check_pelvis(&mut found) };
+        let end = self.fill_head(&mut found, !map.0.contains_key(&index("head_top")));
         let chest = index("chest");
         if found[chest].is_none() {
             found[chest] = found[0].as_ref().zip(found[index("neck")].as_ref()).map(|(p, n)| self.chest(p, n));
         }
-        Ok(found)
+        Ok(Found { points: found, end, notes: notes.into_iter().collect() })
+    }
+
+    /// Lets the pelvis be the joint on which both thighs hang, unless the named one is at its place. Returns what is to be said.
+    fn check_pelvis(&self, found: &mut [Option<Place>; COUNT]) -> Option<String> {
+        let neck = found[index("neck")].as_ref()?.at(&self.rest);
+        let hips = [found[index("l_hip")].as_ref()?, found[index("r_hip")].as_ref()?];
+        let bearer = self.bearer(hips.iter().flat_map(|hip| hip.0.iter().map(|(node, _)| *node)))?;
+        let torso = self.rest[bearer].distance(neck);
+        let near = |node: usize| {
+            let before = self.up(bearer).any(|k| k == node);
+            // What lies between them may move by itself.
+            let fixed = self.up(bearer).take_while(|k| *k != node).all(|k| self.is_fixed(k));
+            let reach = if before && fixed { PELVIS_REACH } else { SAME_PLACE };
+            self.rest[node].distance(self.rest[bearer]) <= reach * torso
+        };
+        let names = MIDDLE.iter().find(|(point, _)| *point == NAMES[0]).map(|(_, names)| *names)?;
+        let mut named = names.iter().filter_map(|name| self.called(None, name));
+        if let Some(node) = named.clone().find(|&node| near(node)) {
+            found[0] = Some(Place::node(node));
+            return None;
+        }
+        found[0] = Some(Place::node(bearer));
+        let (own, other) = (&self.nodes[bearer].name, named.next());
+        let other = other.map(|node| format!(", not {:?}", self.nodes[node].name)).unwrap_or_default();
+        Some(format!("the pelvis is {own:?}, on which both thighs hang{other}"))
+    }
+
+    /// A node and those on which it hangs, up to the root.
+    fn up(&self, node: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(node), |k| self.nodes[*k].parent)
+    }
+
+    /// The joint on which all these nodes hang; none if they have none in common.
+    fn bearer(&self, mut nodes: impl Iterator<Item = usize>) -> Option<usize> {
+        let parent = |node: usize| self.nodes[node].parent;
+        let mut common: Vec<usize> = self.up(parent(nodes.next()?)?).collect();
+        for node in nodes {
+            let own: Vec<usize> = self.up(parent(node)?).collect();
+            common.retain(|k| own.contains(k));
+        }
+        common.first().copied()
+    }
+
+    /// Whether a node stays where it is beside its parent.
+    fn is_fixed(&self, node: usize) -> bool {
+        !self.nodes[node].channels.iter().any(|channel| matches!(channel, Channel::Position(_)))
     }
 
     fn known(&self) -> String {
@@ -260,10 +332,13 @@ impl<'a> Joints<'a> {
         };
         let list = if side.is_some() { LIMBS.as_slice() } else { MIDDLE.as_slice() };
         let (_, names) = list.iter().find(|(name, _)| *name == plain)?;
-        names.iter().find_map(|name| {
-            let is = |k: &usize| !self.nodes[*k].end && self.words[*k] == (side, (*name).to_owned());
-            (0..self.nodes.len()).find(is)
-        })
+        names.iter().find_map(|name| self.called(side, name))
+    }
+
+    /// The first joint of a side and a simplified name.
+    fn called(&self, side: Option<char>, name: &str) -> Option<usize> {
+        let is = |k: &usize| !self.nodes[*k].end && self.words[*k].0 == side && self.words[*k].1 == name;
+        (0..self.nodes.len()).find(is)
     }
 
     /// The end of the chain that hangs on a node, by the longest way up from it.
@@ -273,23 +348,42 @@ impl<'a> Joints<'a> {
         (0..self.nodes.len()).filter(hangs).max_by(|a, b| away(a).total_cmp(&away(b)))
     }
 
-    /// Head and top of the head where names do not tell them.
-    fn fill_head(&self, found: &mut [Option<Place>; COUNT]) {
+    /// Head and top of the head where names do not tell them. A top at the place of its joint counts as missing, if it `may_move`.
+    /// Returns the end that the file lacks.
+    fn fill_head(&self, found: &mut [Option<Place>; COUNT], may_move: bool) -> Option<Node> {
         let [neck, head, top] = ["neck", "head", "head_top"].map(index);
         let only = |place: &Option<Place>| match place.as_ref()?.0.as_slice() {
             [(node, _)] => Some(*node),
             _ => None,
         };
-        let Some(neck_place) = found[neck].clone() else { return };
-        if found[top].is_none() {
-            let chain = only(&found[head]).or_else(|| only(&found[neck]).filter(|_| found[head].is_none()));
-            found[top] = chain.and_then(|node| self.end_of(node)).map(Place::node);
+        let neck_place = found[neck].clone()?;
+        let chain = only(&found[head]).or_else(|| only(&found[neck]).filter(|_| found[head].is_none()));
+        let torso = found[0].as_ref().map_or(0.0, |pelvis| pelvis.at(&self.rest).distance(neck_place.at(&self.rest)));
+        let apart = |a: DVec3, b: DVec3| a.distance(b) > SAME_PLACE * torso;
+        let is_top = |place: &Place| chain.is_none_or(|node| apart(place.at(&self.rest), self.rest[node]));
+        if may_move {
+            let named = found[top].take().filter(is_top);
+            let end = || chain.and_then(|node| self.end_of(node)).map(Place::node).filter(is_top);
+            found[top] = named.or_else(end);
+        }
+        let mut made = None;
+        if let (None, Some(node)) = (&found[top], chain) {
+            let (from, to) = (neck_place.at(&self.rest), self.rest[node]);
+            let up = found[0].as_ref().map_or(DVec3::ZERO, |pelvis| from - pelvis.at(&self.rest));
+            let offset = match &found[head] {
+                Some(_) if apart(from, to) => (to - from) * HEAD_TOP,
+                Some(_) => up * HUMAN[3],
+                None => up * (HUMAN[2] + HUMAN[3]),
+            };
+            found[top] = Some(Place::node(self.nodes.len()));
+            made = Some(Node { name: String::new(), parent: Some(node), offset, channels: Vec::new(), end: true });
         }
         match (&found[head], &found[top]) {
             (None, Some(end)) => found[head] = Some(Place::between(&neck_place, end, HEAD_SHARE)),
             (Some(joint), None) => found[top] = Some(Place::between(&neck_place, joint, 1.0 + HEAD_TOP)),
             _ => {}
         }
+        made
     }
 
     /// The chest: the joint between pelvis and neck nearest to the template's share of the way, or that share of it.
@@ -394,57 +488,4 @@ fn words(name: &str) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_simplified() {
-        let (l, r, no) = (Some('l'), Some('r'), None);
-        for (name, side, plain) in [
-            ("Hips", no, "hips"),
-            ("mixamorig:LeftUpLeg", l, "upleg"),
-            ("mixamorig_RightForeArm", r, "forearm"),
-            ("LHipJoint", l, "hipjoint"),
-            ("joint_Root", no, "root"),
-            ("UpperArm_L", l, "upperarm"),
-            ("upper_arm.R", r, "upperarm"),
-            ("lShldr", l, "shldr"),
-            ("Bip01 R UpperArm", r, "upperarm"),
-            ("Bip01", no, "bip01"),
-            ("LEFT_WRIST", l, "wrist"),
-            ("DEF-thigh.L", l, "thigh"),
-            ("ORG-spine.004", no, "spine004"),
-            ("J_Bip_C_Hips", no, "hips"),
-            ("HipCenter", no, "hip"),
-            ("C", no, "c"),
-            ("LUArm", l, "uarm"),
-            ("ShoulderLeft", l, "shoulder"),
-            ("L", no, "l"),
-            ("leftarm", l, "arm"),
-            ("rhand", r, "hand"),
-            ("leg", no, "leg"),
-            ("LeftLeg", l, "leg"),
-            ("neck_01", no, "neck01"),
-            ("Leg", no, "leg"),
-            ("", no, ""),
-        ] {
-            assert_eq!(simplified(name, 0), (side, plain.to_owned()), "{name}");
-        }
-        assert_eq!(simplified("CC_Base_L_Thigh", 2), (l, "thigh".to_owned()));
-        assert_eq!(simplified("Robot", 1), (no, "robot".to_owned()), "a name is never empty");
-    }
-
-    #[test]
-    fn maps_say_what_is_wrong() {
-        let map = JointMap::parse(r#"{"l_wrist": "Hand", "chest": ["A", "B"]}"#).unwrap();
-        assert_eq!(map.0[&1], ["A", "B"]);
-        let error = |text: &str| JointMap::parse(text).unwrap_err().to_string();
-        assert!(error("{").starts_with("joints: found no JSON"));
-        assert!(error("[1]").starts_with("joints: found a list of 1, expected an object"));
-        assert!(
-            error(r#"{"tail": "x"}"#).starts_with(r#"joints, "tail": found no such key point, expected one of pelvis"#)
-        );
-        assert!(error(r#"{"head": []}"#).contains("found a list of 0, expected a joint's name"));
-        assert!(error(r#"{"head": 3}"#).contains("found 3, expected a joint's name"));
-    }
-}
+mod tests;

@@ -29,6 +29,9 @@ use std::ops::RangeInclusive;
 
 /// A shorter torso is not usable as a unit of length.
 const NO_TORSO: f64 = 1e-9;
+/// Frames a second that files of clips may have.
+const SLOWEST: f64 = 1e-3;
+const FASTEST: f64 = 1e6;
 /// Greatest number of frames of a clip, whatever frame rate is requested.
 const MOST_FRAMES: f64 = 1e6;
 
@@ -58,6 +61,8 @@ pub struct Seen {
     pub fps: f64,
     /// Direction of the view about the vertical, in degrees: at 0 the character faces the viewer, at 90 it faces right.
     pub yaw: f64,
+    /// What a person should know, in words: joints that were not taken by their names.
+    pub notes: Vec<String>,
 }
 
 /// Why a motion cannot be converted.
@@ -80,7 +85,7 @@ pub enum MotionError {
         count: usize,
     },
     /// The requested frame rate is impossible.
-    #[error("frames a second: found {found}, expected a positive number that gives at most {MOST_FRAMES} frames")]
+    #[error("frames a second: found {found}, expected {SLOWEST} to {FASTEST}, and at most {MOST_FRAMES} frames")]
     Rate {
         /// The requested frame rate.
         found: f64,
@@ -107,14 +112,14 @@ pub enum MotionError {
 ///
 /// A [`MotionError`].
 pub fn seen(text: &str, options: &Options) -> Result<Seen, MotionError> {
-    let bvh = parse::parse(text)?;
-    let places = joints::places(&bvh, &options.joints)?;
+    let mut bvh = parse::parse(text)?;
+    let joints::Places { points, notes } = joints::places(&mut bvh, &options.joints)?;
     let frames = frames(&bvh, options)?;
     let first = *frames.start();
     let mut in_space = Vec::with_capacity(frames.clone().count());
     for frame in frames {
         let nodes = kinematics::nodes_at(&bvh, frame);
-        let posture: [DVec3; COUNT] = std::array::from_fn(|k| places[k].at(&nodes));
+        let posture: [DVec3; COUNT] = std::array::from_fn(|k| points[k].at(&nodes));
         if let Some(k) = posture.iter().position(|p| !p.is_finite()) {
             return Err(MotionError::Place { frame, point: NAMES[k] });
         }
@@ -136,7 +141,7 @@ pub fn seen(text: &str, options: &Options) -> Result<Seen, MotionError> {
         postures.push(flat);
     }
     let (postures, fps) = at_rate(postures, rate(&bvh), options.fps)?;
-    Ok(Seen { postures, fps, yaw: camera.yaw })
+    Ok(Seen { postures, fps, yaw: camera.yaw, notes })
 }
 
 /// Frames per second; a rate that misses an integer only by rounding is that integer.
@@ -165,7 +170,7 @@ fn at_rate(postures: Vec<Posture>, own: f64, wanted: Option<f64>) -> Result<(Vec
     let last = (postures.len() - 1) as f64;
     // A number of frames that misses an integer only by rounding counts as that integer.
     let frames = (last * fps / own + 1e-6).floor() + 1.0;
-    if !(fps > 0.0 && fps.is_finite() && frames <= MOST_FRAMES) {
+    if !((SLOWEST..=FASTEST).contains(&fps) && frames <= MOST_FRAMES) {
         return Err(MotionError::Rate { found: fps });
     }
     if (fps - own).abs() <= 1e-9 * own {

@@ -289,7 +289,7 @@ fn what_cannot_be_seen_is_told() {
     let error = |text: &str, options: &Options| seen(text, options).unwrap_err().to_string();
     let out = Options { frames: Some(1..=3), ..Options::default() };
     assert_eq!(error(&text, &out), "frames: found 1 to 3, expected frames of the file, 0 to 2");
-    for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
+    for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9, 0.0004] {
         assert!(error(&text, &Options { fps: Some(fps), ..Options::default() }).starts_with("frames a second: found"));
     }
     let point = file(&USUAL, &[[0.0; 3]; COUNT], &frames);
@@ -300,4 +300,57 @@ fn what_cannot_be_seen_is_told() {
         "frame 0: found neck at a position that is not finite, expected finite coordinates"
     );
     assert!(error("HIERARCHY", &Options::default()).starts_with("line 1: found the end of the file"));
+}
+
+#[test]
+fn the_pelvis_is_where_the_thighs_hang_whatever_it_is_called() {
+    let mut names = USUAL;
+    (names[0], names[1]) = ("COG", "Spine");
+    let text = file(&names, &STANDING, &[[0.0, 10.0, 0.0, 0.0], [0.0, 10.0, 4.0, 0.0]]);
+    let found = seen(&text, &with(View::Front)).unwrap();
+    near(&found.postures[0], &expected(|[x, _, _]| x));
+    assert_eq!(found.notes, [r#"the pelvis is "COG", on which both thighs hang, not "Spine""#]);
+    // A root on the floor, before which the figure goes its way.
+    let root = "ROOT Root\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nJOINT COG";
+    let floor = text.replacen("ROOT COG", root, 1).replacen("MOTION", "}\nMOTION", 1);
+    let floor = floor.replace("\n0 10", "\n0 0 10");
+    let found = seen(&floor, &Options { way: true, ..with(View::Side) }).unwrap();
+    near(&found.postures[0], &expected(|[_, _, z]| z));
+    assert_eq!(found.postures[1][0], Point::new(1.0, 0.0));
+    assert_eq!(found.notes, [r#"the pelvis is "COG", on which both thighs hang, not "Root""#]);
+    // What the map says counts.
+    let joints = JointMap::parse(r#"{"pelvis": "Spine"}"#).unwrap();
+    let found = seen(&text, &Options { joints, ..with(View::Front) }).unwrap();
+    assert!(found.notes.is_empty() && found.postures[0][11].y < 0.0 || found.postures[0][11].y > 0.5);
+    // A joint that lies a little below a pelvis of the usual name, as in files of Daz.
+    let below = "JOINT low\n{\nOFFSET 0 -0.2 0\nCHANNELS 1 Zrotation\nJOINT mixamorig:LeftUpLeg";
+    let daz = file(&USUAL, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
+    let daz = daz.replacen("JOINT mixamorig:LeftUpLeg", below, 1).replacen("MOTION", "}\nMOTION", 1);
+    let daz = daz.trim_end().to_owned() + " 0\n";
+    let found = seen(&daz, &with(View::Front)).unwrap();
+    assert!(found.notes.is_empty(), "{:?}", found.notes);
+    assert!((found.postures[0][2].y + 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_head_nods_though_its_end_has_no_length_or_is_missing() {
+    let text = file(&USUAL, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
+    let before = text.split("JOINT mixamorig:Head").next().unwrap().matches("JOINT ").count();
+    let start = text.rfind("\n0 10 0 0").unwrap();
+    let mut numbers: Vec<&str> = text[start..].split_whitespace().collect();
+    numbers[4 + before] = "90";
+    let nod = format!("{}\n{}\n", &text[..start], numbers.join(" "));
+    let end = "End Site\n{\nOFFSET 0 1.5 0\n}\n";
+    assert!(nod.contains(end));
+    let eye = "JOINT eye\n{\nOFFSET 0 0.5 1\nEnd Site\n{\nOFFSET 0 0 1\n}\n}\n";
+    for (other, length) in [(end, 1.5), ("End Site\n{\nOFFSET 0 0 0\n}\n", 0.0), ("", 0.0), (eye, 0.0)] {
+        let posture = |text: &str| seen(&text.replacen(end, other, 1), &with(View::Front)).unwrap().postures[0];
+        let (still, nodding) = (posture(&text), posture(&nod));
+        let up = |posture: &Posture| (posture[4] - posture[3]) * 4.0;
+        // Without an end the top goes on from the neck over the head, as far as in the template.
+        let long = if length > 0.0 { length } else { 1.5 };
+        assert!(up(&still).distance(Point::new(0.0, -long)) < 1e-12, "{other}: {}", up(&still));
+        assert!((up(&nodding).length() - up(&still).length()).abs() < 0.5, "{other}");
+        assert!(up(&nodding).distance(Point::new(-long, 0.0)) < 1e-12, "{other}: {}", up(&nodding));
+    }
 }
