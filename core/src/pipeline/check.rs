@@ -1,6 +1,7 @@
 //! Checks a document stage by stage: its scene, its limbs, its drawings, pairs and pegs, and its frames.
 
 use super::report::runs;
+use super::reshape::depths::contradiction;
 use super::tween::{peg_of, spacing};
 use super::{PipelineError, changed, gaps, outside};
 use crate::pictures::Sequence;
@@ -74,6 +75,10 @@ fn limbs(set: &LimbSet, scene: &Scene, problems: &mut Problems) {
         let told = error.to_string();
         let (place, what) = told.split_once(": ").unwrap_or(("limbs", &told));
         problems.error(place, what);
+    }
+    let footage = &scene.footage;
+    if let Some(told) = contradiction(set, &scene.parts, footage.first..=footage.last) {
+        problems.error("depth_marks", told);
     }
     for (k, limb) in set.limbs.iter().enumerate() {
         for carried in limb.carries.iter().filter(|carried| scene.part_index(&carried.part).is_err()) {

@@ -19,7 +19,7 @@
 //! - `rate`: the clip at the document's frame rate
 
 mod bodies;
-mod depths;
+pub(super) mod depths;
 mod feet;
 mod hover;
 mod kept;

@@ -57,6 +57,22 @@ fn limbs_that_cannot_be_bound_are_all_named() {
 }
 
 #[test]
+fn marks_that_contradict_each_other_on_a_frame_are_named() {
+    let part = |name: &str| json!({"name": name, "closed": true, "keys": {"0": [[0, 0], [9, 0], [9, 9]]}});
+    let told = |second: Value| {
+        let marks = [json!({"front": "arm", "behind": "leg", "last": 5}), second];
+        let document = document(&json!({"parts": [part("arm"), part("leg")], "depth_marks": marks}));
+        let mut problems = Problems::default();
+        limbs(&document.limbs().unwrap(), &document.scene, &mut problems);
+        problems.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let both = "depth_marks[0] (\"arm\" in front of \"leg\"), depth_marks[1] (\"leg\" in front of \"arm\")";
+    let found = told(json!({"front": "leg", "behind": "arm", "first": 5}));
+    assert_eq!(found, [format!("depth_marks: frame 5: found marks that contradict each other: {both}")]);
+    assert!(told(json!({"front": "leg", "behind": "arm", "first": 6})).is_empty());
+}
+
+#[test]
 fn colours_that_become_others_without_effect_are_named() {
     let click = json!({"frame": 0, "regions": [{"at": [1, 1], "name": "coat", "colour": [0, 0, 1]}]});
     let entry = |from: &str, first| json!({"from": {"name": from, "colour": [1, 0, 0]}, "to": {"name": "wet", "colour": [0, 0, 0]}, "first": first});

@@ -10,9 +10,9 @@ use super::bodies::Body;
 use super::{Given, PipelineError, wrong};
 use crate::pipeline::report::runs;
 use crate::reshape::depth::{DepthError, Kin, Mark, changed, infer};
-use crate::scene::limbs::{Follow, LimbSet};
+use crate::scene::limbs::{DepthMark, Follow, LimbSet};
 use crate::scene::{FrameNumber, Part};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::RangeInclusive;
 
 /// Depths are written to a millionth.
@@ -33,17 +33,10 @@ pub(super) fn of(
     bodies: &[Body],
     frames: RangeInclusive<FrameNumber>,
 ) -> Result<Depths, PipelineError> {
-    let index = |name: &str| parts.iter().position(|part| part.name == name).unwrap_or(usize::MAX);
-    let mark = |m: &crate::scene::limbs::DepthMark| Mark {
-        front: index(&m.front),
-        behind: index(&m.behind),
-        first: m.first,
-        last: m.last,
-    };
-    let marks: Vec<Mark> = set.marks.iter().map(mark).collect();
+    let marks = marks(set, parts);
     let own: Vec<f64> = parts.iter().map(|part| part.depth).collect();
     let kin = kin(set, parts, bodies);
-    let infer = |frame| infer(&own, &marks, &kin, frame).map_err(|error| failed(&error, set));
+    let infer = |frame| infer(&own, &marks, &kin, frame).map_err(|error| wrong(failed(&error, set)));
     let by_frame = frames.clone().map(infer).collect::<Result<Vec<_>, _>>()?;
     let rounded = |d: f64| (d * SCALE).round() / SCALE;
     let written = |k: usize, depth: f64| if depth == own[k] { depth } else { rounded(depth) };
@@ -57,16 +50,38 @@ pub(super) fn of(
     Ok(Depths { by_part, said: said(&passed, parts) })
 }
 
+/// Marks of the document that contradict each other on a frame of a footage, in words.
+pub(in crate::pipeline) fn contradiction(
+    set: &LimbSet,
+    parts: &[Part],
+    footage: RangeInclusive<FrameNumber>,
+) -> Option<String> {
+    let marks = marks(set, parts);
+    let own: Vec<f64> = parts.iter().map(|part| part.depth).collect();
+    let kin = Kin { with: vec![Vec::new(); parts.len()], body: vec![false; parts.len()] };
+    // Marks come together on the first frame of the last one of them.
+    let begins: BTreeSet<FrameNumber> = marks.iter().map(|mark| mark.first.max(*footage.start())).collect();
+    let frames = begins.into_iter().filter(|frame| footage.contains(frame));
+    frames.filter_map(|frame| infer(&own, &marks, &kin, frame).err()).next().map(|error| failed(&error, set))
+}
+
+/// The marks of a document, with indices of parts.
+fn marks(set: &LimbSet, parts: &[Part]) -> Vec<Mark> {
+    let index = |name: &str| parts.iter().position(|part| part.name == name).unwrap_or(usize::MAX);
+    let mark = |m: &DepthMark| Mark { front: index(&m.front), behind: index(&m.behind), first: m.first, last: m.last };
+    set.marks.iter().map(mark).collect()
+}
+
 /// The failure of an order. Marks are named as the document has them.
-fn failed(error: &DepthError, set: &LimbSet) -> PipelineError {
+fn failed(error: &DepthError, set: &LimbSet) -> String {
     let named =
         |k: &usize| format!("depth_marks[{k}] ({:?} in front of {:?})", set.marks[*k].front, set.marks[*k].behind);
     match error {
         DepthError::Contradiction { frame, marks } => {
             let list: Vec<String> = marks.iter().map(named).collect();
-            wrong(format!("frame {frame}: found marks that contradict each other: {}", list.join(", ")))
+            format!("frame {frame}: found marks that contradict each other: {}", list.join(", "))
         }
-        other => wrong(format!("depth_marks: {other}")),
+        other => format!("depth_marks: {other}"),
     }
 }
 
