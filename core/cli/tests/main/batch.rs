@@ -324,8 +324,10 @@ fn wrong_steps_and_names_of_results_end_before_any_work() {
         assert!(!said.contains("found no steps"), "the shots are not told of it: {said}");
     }
     assert!(!season.path("out").exists());
-    season.manifest(&json!([{"do": "check", "drawings": true}, {"do": "track"}, {"do": "tween", "suggest": false}]), 1);
-    season.good(&[]);
+    for drawings in [json!(true), json!(false), json!("on")] {
+        season.manifest(&json!([{"do": "check", "drawings": drawings}]), 1);
+        season.good(&[]);
+    }
 }
 
 #[test]
