@@ -11,7 +11,7 @@ use super::problem::Problems;
 use super::schema::{FOOTAGE, Field, GAPS, PART, TOP};
 use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
-use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
 /// The document's fields that other stages read.
@@ -79,16 +79,13 @@ impl Document {
     }
 
     fn misspelt_within(&self, problems: &mut Problems) {
-        let mut fields: BTreeMap<&str, Option<Value>> = BTreeMap::new();
         for (way, known) in WITHIN {
             let Some((first, rest)) = way.split_first() else { continue };
-            let read = || serde_json::from_str(self.other_field(first)?).ok();
+            let Some(text) = self.other_field(first) else { continue };
             let mut found = BTreeMap::new();
-            if let Some(value) = fields.entry(first).or_insert_with(read) {
-                search(value, first, rest, known, &mut found);
-            }
+            search(text, first, rest, known, &mut found);
             for (name, (place, count)) in found {
-                let Some(meant) = known.iter().find(|known| alike(name, known)) else { continue };
+                let Some(meant) = known.iter().find(|known| alike(&name, known)) else { continue };
                 let more = if count > 1 { format!(", here and in {} more places", count - 1) } else { String::new() };
                 let told = format!("no field has this name, so it has no effect{more}; probably {meant:?} is meant");
                 problems.warning(place, told);
@@ -97,32 +94,26 @@ impl Document {
     }
 }
 
-/// Looks for misspelt fields of the objects at the end of a way. Returns for each name the first place and the number of places.
-fn search<'a>(
-    value: &'a Value,
-    place: &str,
-    way: &[&str],
-    known: &[&str],
-    found: &mut BTreeMap<&'a str, (String, usize)>,
-) {
-    match (value, way.split_first()) {
-        (Value::Array(list), _) => {
-            for (k, value) in list.iter().enumerate() {
-                search(value, &format!("{place}[{k}]"), way, known, found);
-            }
+/// Looks for misspelt fields of the objects at the end of a way through JSON. Finds for each name the first place and the number of places. Points and the like
+/// are passed over as text: a film has millions of them, and every command looks.
+fn search(text: &str, place: &str, way: &[&str], known: &[&str], found: &mut BTreeMap<String, (String, usize)>) {
+    if let Ok(list) = serde_json::from_str::<Vec<&RawValue>>(text) {
+        for (k, value) in list.iter().enumerate() {
+            search(value.get(), &format!("{place}[{k}]"), way, known, found);
         }
-        (Value::Object(fields), Some((next, rest))) => {
-            if let Some(value) = fields.get(*next) {
-                search(value, &format!("{place}.{next}"), rest, known, found);
-            }
+        return;
+    }
+    let Ok(fields) = serde_json::from_str::<BTreeMap<String, &RawValue>>(text) else { return };
+    if let Some((next, rest)) = way.split_first() {
+        if let Some(value) = fields.get(*next) {
+            search(value.get(), &format!("{place}.{next}"), rest, known, found);
         }
-        (Value::Object(fields), None) => {
-            let unknown = fields.keys().map(String::as_str).filter(|name| !known.contains(name));
-            for name in unknown.filter(|name| known.iter().any(|known| alike(name, known))) {
-                found.entry(name).or_insert_with(|| (format!("{place}.{name}"), 0)).1 += 1;
-            }
+        return;
+    }
+    for name in fields.into_keys() {
+        if !known.contains(&name.as_str()) && known.iter().any(|known| alike(&name, known)) {
+            found.entry(name).or_insert_with_key(|name| (format!("{place}.{name}"), 0)).1 += 1;
         }
-        _ => {}
     }
 }
 
