@@ -128,12 +128,26 @@ fn warn(place: &str, fields: &[Field], known: &[&str], problems: &mut Problems) 
     }
 }
 
-/// Whether one or two letters make the difference, whatever the case and the joints of the words.
+/// Whether one or two letters make the difference, or two neighbours in each other's places, whatever the case and the joints of the words.
 fn alike(name: &str, known: &str) -> bool {
     let plain = |text: &str| text.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect::<String>();
     let (name, known) = (plain(name), plain(known));
     let allowed = if known.len() > 5 { 2 } else { 1 };
-    name.chars().count().abs_diff(known.chars().count()) <= allowed && letters_apart(&name, &known) <= allowed
+    let near = name.chars().count().abs_diff(known.chars().count()) <= allowed;
+    near && (letters_apart(&name, &known) <= allowed || is_swapped(&name, &known))
+}
+
+/// Whether names are the same but for two neighbouring letters in each other's places.
+fn is_swapped(name: &str, known: &str) -> bool {
+    let (name, known): (Vec<char>, Vec<char>) = (name.chars().collect(), known.chars().collect());
+    let first = name.iter().zip(&known).position(|(a, b)| a != b);
+    first.is_some_and(|k| {
+        let mut swapped = name.clone();
+        k + 1 < swapped.len() && {
+            swapped.swap(k, k + 1);
+            swapped == known
+        }
+    })
 }
 
 #[cfg(test)]
@@ -188,6 +202,7 @@ mod tests {
 
     #[test]
     fn other_words_are_not_alike() {
+        assert!(alike("frist", "first") && alike("kyes", "keys") && !alike("ksey", "keys"));
         assert!(!alike("note", "name") && !alike("title", "tracks") && !alike("colour", "curves"));
     }
 }
