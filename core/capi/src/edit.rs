@@ -127,6 +127,9 @@ pub fn set_key(scene: &mut Scene, name: &str, frame: FrameNumber, coordinates: &
     if !fits {
         part.pins.clear();
         part.centers.clear();
+    }
+    // Results beside no key, which a document may have, are not those of the new one.
+    if !fits || part.keys.is_empty() {
         forget_results(part, |_| true);
     }
     part.pins.remove(&frame);
@@ -375,6 +378,15 @@ mod tests {
         set_key(&mut scene, "arm", 0, &[1.0, 2.0]).unwrap();
         assert_eq!(scene.parts[0].point_count(), 1);
         assert!(scene.parts[0].tracks.is_empty());
+    }
+
+    #[test]
+    fn results_without_a_key_do_not_stay_beside_a_new_one() {
+        let mut scene = scene();
+        scene.parts[0].keys.clear();
+        set_key(&mut scene, "arm", 4, &KEY[..2]).unwrap();
+        let part = &scene.parts[0];
+        assert!(part.point_count() == 1 && part.tracks.is_empty() && part.confidence.is_empty());
     }
 
     #[test]

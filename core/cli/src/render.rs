@@ -136,7 +136,9 @@ fn probed(job: &RenderJob, footage: &Footage) -> BTreeSet<PathBuf> {
     let output = Path::new(&job.output);
     let Ok(pattern) = FramePattern::parse(&job.output) else { return [output.to_owned()].into() };
     let file = output.file_name().unwrap_or_default();
-    let frames = job.frames.clone().unwrap_or(footage.first..=footage.last);
+    let asked = job.frames.clone().unwrap_or(footage.first..=footage.last);
+    // Of frames that the footage does not have there may be very many; rendering refuses them.
+    let frames = (*asked.start()).max(footage.first)..=(*asked.end()).min(footage.last);
     frames.map(|frame| pattern.path(frame.saturating_add(job.offset)).with_file_name(file)).collect()
 }
 

@@ -11,7 +11,7 @@ use super::problem::Problems;
 use super::schema::{FOOTAGE, Field, GAPS, PART, TOP};
 use super::shape::part_place;
 use rototoon_base::scene::spelling::letters_apart;
-use serde_json::Value;
+use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
 /// The document's fields that other stages read.
@@ -79,16 +79,13 @@ impl Document {
     }
 
     fn misspelt_within(&self, problems: &mut Problems) {
-        let mut fields: BTreeMap<&str, Option<Value>> = BTreeMap::new();
         for (way, known) in WITHIN {
             let Some((first, rest)) = way.split_first() else { continue };
-            let read = || serde_json::from_str(self.other_field(first)?).ok();
+            let Some(text) = self.other_field(first) else { continue };
             let mut found = BTreeMap::new();
-            if let Some(value) = fields.entry(first).or_insert_with(read) {
-                search(value, first, rest, known, &mut found);
-            }
+            search(text, first, rest, known, &mut found);
             for (name, (place, count)) in found {
-                let Some(meant) = known.iter().find(|known| alike(name, known)) else { continue };
+                let Some(meant) = known.iter().find(|known| alike(&name, known)) else { continue };
                 let more = if count > 1 { format!(", here and in {} more places", count - 1) } else { String::new() };
                 let told = format!("no field has this name, so it has no effect{more}; probably {meant:?} is meant");
                 problems.warning(place, told);
@@ -97,32 +94,26 @@ impl Document {
     }
 }
 
-/// Looks for misspelt fields of the objects at the end of a way. Returns for each name the first place and the number of places.
-fn search<'a>(
-    value: &'a Value,
-    place: &str,
-    way: &[&str],
-    known: &[&str],
-    found: &mut BTreeMap<&'a str, (String, usize)>,
-) {
-    match (value, way.split_first()) {
-        (Value::Array(list), _) => {
-            for (k, value) in list.iter().enumerate() {
-                search(value, &format!("{place}[{k}]"), way, known, found);
-            }
+/// Looks for misspelt fields of the objects at the end of a way through JSON. Finds for each name the first place and the number of places. Points and the like
+/// are passed over as text: a film has millions of them, and every command looks.
+fn search(text: &str, place: &str, way: &[&str], known: &[&str], found: &mut BTreeMap<String, (String, usize)>) {
+    if let Ok(list) = serde_json::from_str::<Vec<&RawValue>>(text) {
+        for (k, value) in list.iter().enumerate() {
+            search(value.get(), &format!("{place}[{k}]"), way, known, found);
         }
-        (Value::Object(fields), Some((next, rest))) => {
-            if let Some(value) = fields.get(*next) {
-                search(value, &format!("{place}.{next}"), rest, known, found);
-            }
+        return;
+    }
+    let Ok(fields) = serde_json::from_str::<BTreeMap<String, &RawValue>>(text) else { return };
+    if let Some((next, rest)) = way.split_first() {
+        if let Some(value) = fields.get(*next) {
+            search(value.get(), &format!("{place}.{next}"), rest, known, found);
         }
-        (Value::Object(fields), None) => {
-            let unknown = fields.keys().map(String::as_str).filter(|name| !known.contains(name));
-            for name in unknown.filter(|name| known.iter().any(|known| alike(name, known))) {
-                found.entry(name).or_insert_with(|| (format!("{place}.{name}"), 0)).1 += 1;
-            }
+        return;
+    }
+    for name in fields.into_keys() {
+        if !known.contains(&name.as_str()) && known.iter().any(|known| alike(&name, known)) {
+            found.entry(name).or_insert_with_key(|name| (format!("{place}.{name}"), 0)).1 += 1;
         }
-        _ => {}
     }
 }
 
@@ -137,12 +128,26 @@ fn warn(place: &str, fields: &[Field], known: &[&str], problems: &mut Problems) 
     }
 }
 
-/// Whether one or two letters make the difference, whatever the case and the joints of the words.
+/// Whether one or two letters make the difference, or two neighbours in each other's places, whatever the case and the joints of the words.
 fn alike(name: &str, known: &str) -> bool {
     let plain = |text: &str| text.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect::<String>();
     let (name, known) = (plain(name), plain(known));
     let allowed = if known.len() > 5 { 2 } else { 1 };
-    name.chars().count().abs_diff(known.chars().count()) <= allowed && letters_apart(&name, &known) <= allowed
+    let near = name.chars().count().abs_diff(known.chars().count()) <= allowed;
+    near && (letters_apart(&name, &known) <= allowed || is_swapped(&name, &known))
+}
+
+/// Whether names are the same but for two neighbouring letters in each other's places.
+fn is_swapped(name: &str, known: &str) -> bool {
+    let (name, known): (Vec<char>, Vec<char>) = (name.chars().collect(), known.chars().collect());
+    let first = name.iter().zip(&known).position(|(a, b)| a != b);
+    first.is_some_and(|k| {
+        let mut swapped = name.clone();
+        k + 1 < swapped.len() && {
+            swapped.swap(k, k + 1);
+            swapped == known
+        }
+    })
 }
 
 #[cfg(test)]
@@ -197,6 +202,7 @@ mod tests {
 
     #[test]
     fn other_words_are_not_alike() {
+        assert!(alike("frist", "first") && alike("kyes", "keys") && !alike("ksey", "keys"));
         assert!(!alike("note", "name") && !alike("title", "tracks") && !alike("colour", "curves"));
     }
 }

@@ -18,7 +18,8 @@ pub fn left_out_of_shapes(document: &Document, extension: &str) -> Option<String
         feather.map(|names| format!("the shapes are sharp: the file has no feather of the points of {names}"));
     let falloff = listed(&|part| !export::has_falloff(extension, part.falloff));
     let falloff = falloff.map(|names| format!("the file has no such falloff, or only its rate, as that of {names}"));
-    let order = listed(&|part| part.depths.values().any(|depth| *depth != part.depth));
+    let footage = &document.scene.footage;
+    let order = listed(&|part| part.depth_in(footage.first..=footage.last).is_none());
     let order =
         order.map(|names| format!("the file has one order of parts for all frames, and the depth changes of {names}"));
     let varying = (extension == "svg").then(|| strokes::varying(document)).flatten();
@@ -57,7 +58,8 @@ mod tests {
             depths: depths.iter().copied().collect(),
             ..Part::default()
         };
-        let parts = vec![part("arm", &[(3, 2.0)]), part("leg", &[(3, 0.0)]), part("head", &[])];
+        let always: Vec<(i32, f64)> = (1..=9).map(|frame| (frame, 4.0)).collect();
+        let parts = vec![part("arm", &[(3, 2.0)]), part("leg", &[(3, 0.0)]), part("hat", &always), part("head", &[])];
         let document = Document::new(Scene { footage, parts });
         for form in ["nk", "svg", "fxs", "setting", "jsx", "ntp", "py"] {
             let told = left_out_of_shapes(&document, form).unwrap();

@@ -15,18 +15,21 @@ pub(super) fn common<T: Copy + Ord>(lists: &[Vec<T>]) -> Vec<T> {
     // In how many lists something that is left comes before a member.
     let mut waits = vec![0_usize; all.len()];
     left.iter().flat_map(|list| list.iter().skip(1)).for_each(|&k| waits[k] += 1);
+    // The lists of each member, so that one that is in few of them is not looked for in all: a film has thousands of frames.
+    let mut lists_of = vec![Vec::new(); all.len()];
+    left.iter().enumerate().for_each(|(at, list)| list.iter().for_each(|&k| lists_of[k].push(at)));
     let mut order = Vec::with_capacity(all.len());
     while let Some(next) = left.iter().filter_map(|list| list.front().copied()).min_by_key(|&k| waits[k]) {
         order.push(all[next]);
-        for list in &mut left {
+        for &at in &lists_of[next] {
+            let list = &mut left[at];
             if list.front() == Some(&next) {
                 list.pop_front();
                 list.front().into_iter().for_each(|&k| waits[k] -= 1);
-            } else if waits[next] > 0 {
+            } else {
                 list.retain(|&k| k != next);
             }
         }
-        left.retain(|list| !list.is_empty());
     }
     order
 }

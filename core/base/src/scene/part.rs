@@ -8,6 +8,7 @@ use super::{Colour, Falloff, FrameNumber, palette};
 use crate::geometry::Point;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 /// A contour with its keys, the artist's corrections, and the results of tracking and snapping.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -233,6 +234,12 @@ impl Part {
     /// Depth on a frame.
     pub fn depth_at(&self, frame: FrameNumber) -> f64 {
         self.depths.get(&frame).copied().unwrap_or(self.depth)
+    }
+
+    /// The depth on all these frames, if it is one.
+    pub fn depth_in(&self, mut frames: RangeInclusive<FrameNumber>) -> Option<f64> {
+        let depth = self.depth_at(*frames.start());
+        (self.depths.is_empty() || frames.all(|frame| self.depth_at(frame) == depth)).then_some(depth)
     }
 
     /// The widths of the soft border, if there is one for each control point and one of them is above 0.

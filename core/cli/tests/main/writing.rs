@@ -175,6 +175,9 @@ fn folders_that_have_the_number_of_the_frame_are_looked_for_before_the_work() {
     fs::create_dir(cartoon.path("f_2")).unwrap();
     good(&words);
     assert!(cartoon.path("f_1/m.png").exists() && cartoon.path("f_2/m.png").exists());
+    // Frames that the footage does not have are not looked for one by one: that would take all memory.
+    let far = ["render", text(&project), "-o", text(&pattern), "--what", "matte", "--frames", "0-2000000000"];
+    assert!(bad(&far, 2).contains("expected frames of the footage"));
     fs::create_dir(cartoon.path("f_1001")).unwrap();
     good(&[
         "render",

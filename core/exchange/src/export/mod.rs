@@ -43,9 +43,15 @@ use rototoon_base::scene::{Falloff, FalloffCurve, Scene};
 
 /// Indices of the parts in the order of shape lists: nearest first; of equal depths the later part first.
 fn nearest_first(scene: &Scene) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
-    order.sort_by(|&a, &b| scene.parts[b].depth.total_cmp(&scene.parts[a].depth).then(b.cmp(&a)));
+    let (mut order, depths): (Vec<usize>, _) = ((0..scene.parts.len()).collect(), depths(scene));
+    order.sort_by(|&a, &b| depths[b].total_cmp(&depths[a]).then(b.cmp(&a)));
     order
+}
+
+/// The depth by which each part lies in a file, which has one order for all frames: that on all frames of the footage, else that of the part alone.
+fn depths(scene: &Scene) -> Vec<f64> {
+    let frames = scene.footage.first..=scene.footage.last;
+    scene.parts.iter().map(|part| part.depth_in(frames.clone()).unwrap_or(part.depth)).collect()
 }
 
 /// Whether a file with this extension says how wide the pixels of the footage are.
@@ -108,6 +114,21 @@ mod tests {
                 "{extension}"
             );
         }
+    }
+
+    #[test]
+    fn a_depth_that_is_the_same_on_all_frames_counts() {
+        use rototoon_base::scene::{Footage, Part};
+        let footage =
+            Footage { pattern: "%d".into(), first: 0, last: 3, fps: 12.5, width: 40, height: 30, held: false };
+        let part = |depth: f64, depths: &[(i32, f64)]| Part {
+            depth,
+            depths: depths.iter().copied().collect(),
+            ..Part::default()
+        };
+        let marked = part(0.0, &[0, 1, 2, 3].map(|frame| (frame, 5.0)));
+        let scene = Scene { footage, parts: vec![marked, part(1.0, &[]), part(0.5, &[(2, 9.0)])] };
+        assert_eq!(nearest_first(&scene), [0, 1, 2]);
     }
 
     #[test]

@@ -147,8 +147,8 @@ pub fn svg_with_drawn(scene: &Scene, fills: &[SvgFill], strokes: &[SvgStroke], o
     for each in fills {
         fill(&mut painted, scene, each);
     }
-    let mut order: Vec<usize> = (0..scene.parts.len()).collect();
-    order.sort_by(|&a, &b| scene.parts[a].depth.total_cmp(&scene.parts[b].depth));
+    let (mut order, depths): (Vec<usize>, _) = ((0..scene.parts.len()).collect(), super::depths(scene));
+    order.sort_by(|&a, &b| depths[a].total_cmp(&depths[b]));
     let names = written(scene, plain);
     let mut contours = String::new();
     for index in order {

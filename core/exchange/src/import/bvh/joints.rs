@@ -10,7 +10,8 @@
 //! VRoid, Character Creator, Motive, Kinect, Blender's Rigify, and the Bandai Namco research data. If names do not tell all key
 //! points, they are read once more without the words with which most of them begin (`Robot_Hips`).
 //!
-//! The pelvis is the joint on which both thighs hang, whatever it is called, or a joint before it that lies at the same place.
+//! The pelvis is the joint on which both thighs hang, whatever it is called, or a joint before it that lies at the same place. Where
+//! thighs hang on a joint far from them, such as a root on the floor, a name tells the pelvis.
 //! Spines have any number of joints, so the chest is found by place: the joint between pelvis and neck that is nearest to the
 //! template's share of the way, or that share itself where none is near. The top of the head is the end of the head's chain; a head
 //! without a joint lies on the way from the neck to that end. Some programs write such an end at the place of its joint, and some
@@ -59,6 +60,8 @@ const HEAD_SHARE: f64 = HUMAN[2] / (HUMAN[2] + HUMAN[3]);
 /// How far the top of the head lies beyond a head without an end, in lengths of the neck.
 const HEAD_TOP: f64 = HUMAN[3] / HUMAN[2];
 
+/// Greatest distance of a pelvis from the middle of the hips, in torsos. Thighs may hang on a root on the floor.
+const BEARER_REACH: f64 = 0.5;
 /// Share of the torso within which a named pelvis above the thighs' joint is the pelvis.
 const PELVIS_REACH: f64 = 0.2;
 /// Share of the torso within which two joints lie at the same place.
@@ -262,6 +265,14 @@ impl<'a> Joints<'a> {
         let neck = found[index("neck")].as_ref()?.at(&self.rest);
         let hips = [found[index("l_hip")].as_ref()?, found[index("r_hip")].as_ref()?];
         let bearer = self.bearer(hips.iter().flat_map(|hip| hip.0.iter().map(|(node, _)| *node)))?;
+        let names = MIDDLE.iter().find(|(point, _)| *point == NAMES[0]).map(|(_, names)| *names)?;
+        let mut named = names.iter().filter_map(|name| self.called(None, name));
+        let middle = (hips[0].at(&self.rest) + hips[1].at(&self.rest)) * 0.5;
+        let is_at_hips = |node: usize| self.rest[node].distance(middle) <= BEARER_REACH * middle.distance(neck);
+        if !is_at_hips(bearer) {
+            found[0] = Some(Place::node(named.find(|&node| is_at_hips(node))?));
+            return None;
+        }
         let torso = self.rest[bearer].distance(neck);
         let near = |node: usize| {
             let before = self.up(bearer).any(|k| k == node);
@@ -270,8 +281,6 @@ impl<'a> Joints<'a> {
             let reach = if before && fixed { PELVIS_REACH } else { SAME_PLACE };
             self.rest[node].distance(self.rest[bearer]) <= reach * torso
         };
-        let names = MIDDLE.iter().find(|(point, _)| *point == NAMES[0]).map(|(_, names)| *names)?;
-        let mut named = names.iter().filter_map(|name| self.called(None, name));
         if let Some(node) = named.clone().find(|&node| near(node)) {
             found[0] = Some(Place::node(node));
             return None;

@@ -333,6 +333,21 @@ fn the_pelvis_is_where_the_thighs_hang_whatever_it_is_called() {
 }
 
 #[test]
+fn thighs_that_hang_on_a_root_on_the_floor_do_not_make_it_the_pelvis() {
+    let text = file(&USUAL, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
+    let [left, right] = [11, 14].map(|k| joint(k, &USUAL, &STANDING));
+    let bare = text.replacen(&left, "", 1).replacen(&right, "", 1);
+    let root = "ROOT Root\n{\nOFFSET 0 0 0\nCHANNELS 1 Xposition\nJOINT mixamorig:Hips";
+    let legs =
+        [left.replacen("OFFSET 1 0 0", "OFFSET 1 10 0", 1), right.replacen("OFFSET -1 0 0", "OFFSET -1 10 0", 1)];
+    let legs = legs.concat();
+    let floor = bare.replacen("ROOT mixamorig:Hips", root, 1).replacen("MOTION", &format!("{legs}}}\nMOTION"), 1);
+    let found = seen(&floor.replace("\n0 10", "\n0 0 10"), &with(View::Front)).unwrap();
+    near(&found.postures[0], &expected(|[x, _, _]| x));
+    assert!(found.notes.is_empty(), "{:?}", found.notes);
+}
+
+#[test]
 fn a_head_nods_though_its_end_has_no_length_or_is_missing() {
     let text = file(&USUAL, &STANDING, &[[0.0, 10.0, 0.0, 0.0]]);
     let before = text.split("JOINT mixamorig:Head").next().unwrap().matches("JOINT ").count();

@@ -74,9 +74,27 @@ pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
     let mut into = Into { scene, places, named, depth, found: Vec::new(), merged: Merged::default() };
     shapes.into_iter().for_each(|shape| into.take(shape));
     let Into { scene, found, mut merged, .. } = into;
-    let moved = order::put(&mut scene.parts, &found);
+    let moved = put(scene, &found);
     merged.moved = moved.into_iter().map(|place| scene.parts[place].name.clone()).collect();
     merged
+}
+
+/// Gives parts depths for the order in which the file has them. Exports write a part by the depth that it has on all frames, so that counts here too, and is
+/// the part's own once another one moved.
+fn put(scene: &mut Scene, found: &[usize]) -> Vec<usize> {
+    let frames = scene.footage.first..=scene.footage.last;
+    let before: Vec<_> = scene.parts.iter().map(|part| (part.depth, part.depths.clone())).collect();
+    for part in &mut scene.parts {
+        if let Some(depth) = part.depth_in(frames.clone()) {
+            part.depth = depth;
+            part.depths.clear();
+        }
+    }
+    let moved = order::put(&mut scene.parts, found);
+    if moved.is_empty() {
+        scene.parts.iter_mut().zip(before).for_each(|(part, own)| (part.depth, part.depths) = own);
+    }
+    moved
 }
 
 /// A scene that shapes go into.

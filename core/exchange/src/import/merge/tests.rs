@@ -259,6 +259,20 @@ fn parts_that_lie_in_another_order_in_the_file_move() {
 }
 
 #[test]
+fn a_depth_that_is_the_same_on_all_frames_counts_as_exports_have_it() {
+    let part = |name: &str, depth| Part { name: name.into(), depth, ..tracked() };
+    let mut scene = Scene { footage: footage(), parts: vec![part("arm", 0.0), part("leg", 1.0), part("head", 2.0)] };
+    scene.parts[0].depths = (1..=12).map(|frame| (frame, 5.0)).collect();
+    let before = scene.clone();
+    let shapes = |order: [usize; 3]| order.map(|k| written(&before.parts[k])).into();
+    assert!(into_scene(&mut scene, shapes([1, 2, 0])).moved.is_empty());
+    assert_eq!(scene, before);
+    assert_eq!(into_scene(&mut scene, shapes([2, 1, 0])).moved, ["leg"]);
+    let depths: Vec<_> = scene.parts.iter().map(|part| part.depth_at(3)).collect();
+    assert_eq!(depths, [5.0, 3.5, 2.0]);
+}
+
+#[test]
 fn the_rate_of_a_falloff_is_taken_where_it_is_another_one() {
     let part = tracked();
     let border = |rate: f64| Shape { falloff: Some(Falloff { rate, curve: None }), ..written(&part) };
