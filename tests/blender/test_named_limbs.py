@@ -92,6 +92,8 @@ def test_marks_leave_with_their_part(addon, doll, tmp_path):
     bpy.ops.rototoon.depth_mark(front=names[3], behind=names[1])
     bpy.ops.rototoon.depth_mark(front=names[0], behind=names[1])
     remove(addon, doll, 3)
+    lost = f'since a part has no contours: "{names[3]}" in front of "{names[1]}"'
+    assert f"left out, {lost}" in said_of(addon, lambda: exported(tmp_path))
     assert exported(tmp_path)["depth_marks"] == [{"front": names[0], "behind": names[1]}], "the document stays of use before Match Contours, too"
     told = said_of(addon, lambda: reshaped(addon, doll))
     assert f'without effect, since a part has no contours: "{names[3]}" in front of "{names[1]}"' in told
