@@ -113,3 +113,10 @@ def test_limbs_of_a_part_without_contours_are_named(addon, doll):
     assert f'"{arm}"; gone with it: limb neck to r_shoulder, limb r_shoulder to r_elbow, limb r_elbow to r_wrist' in told
     assert len(addon("style.limbs").defined(doll)) == count - 3
     reshaped(addon, doll)
+
+
+@pytest.mark.parametrize("field", ["limbs", "depth_marks", "follows"])
+def test_a_damaged_list_is_no_error_of_python(addon, doll, tmp_path, field):
+    doll.rototoon.extra = json.dumps({**json.loads(doll.rototoon.extra), field: [None, 3, [], "arm"]})
+    doll.rototoon.parts[0].name = "leg"
+    assert exported(tmp_path)[field] == [None, 3, [], "arm"]
