@@ -75,6 +75,18 @@ def test_parts_of_an_older_file_are_known_by_their_names(addon, doll, tmp_path):
     reshaped(addon, ob)
 
 
+def test_parts_of_an_open_file_are_known_after_an_update(addon, doll):
+    for part in doll.rototoon.parts:
+        part.known_as = ""
+    handlers = addon("handlers")
+    handlers.unregister()
+    handlers.register()
+    (later,) = [each for each in vars(handlers).values() if callable(each) and bpy.app.timers.is_registered(each)]
+    assert later() is None
+    doll.rototoon.parts[2].name = "arm"
+    reshaped(addon, doll)
+
+
 def remove(addon, ob, index):
     handle, _ = addon("blender.grease_pencil").drawings(shots.layer_of(ob))[1]
     handle.remove_strokes(indices=[index])
