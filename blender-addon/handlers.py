@@ -24,6 +24,11 @@ def _loaded(*_args) -> None:
     movie.mark_used(used_folders())
     for ob in bpy.data.objects:
         older_files.mark(ob)
+    _remember_parts()
+
+
+def _remember_parts() -> None:
+    for ob in bpy.data.objects:
         if not guard.refusal(ob, guard.SETTINGS):
             part_names.remember(ob)
 
@@ -154,6 +159,8 @@ def register() -> None:
     """Adds the handlers."""
     for name, hook in _HOOKS:
         getattr(bpy.app.handlers, name).append(hook)
+    # An update of the extension finds a file that an older version has opened. What is open can be read only after the registration.
+    bpy.app.timers.register(_remember_parts, first_interval=0.01)
 
 
 def unregister() -> None:
@@ -162,6 +169,8 @@ def unregister() -> None:
         hooks = getattr(bpy.app.handlers, name)
         if hook in hooks:
             hooks.remove(hook)
+    if bpy.app.timers.is_registered(_remember_parts):
+        bpy.app.timers.unregister(_remember_parts)
     live.reset()
     arrivals.reset()
     stand.clear()

@@ -58,7 +58,7 @@ def named(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
             return place
     other = bpy.data.materials.get(name)
     if other is not None and _serves(other, colour):
-        return _add(ob, other)
+        return materials.append(ob, other)
     return _append(ob, name, colour)
 
 
@@ -137,11 +137,4 @@ def _append(ob: bpy.types.Object, name: str, colour: np.ndarray) -> int:
     style.color = style.fill_color = (*to_linear(np.asarray(colour, np.float64)), 1.0)
     if not gp.FILL_BY_ID:
         style.show_stroke, style.show_fill = False, True
-    return _add(ob, made)
-
-
-def _add(ob: bpy.types.Object, material: bpy.types.Material) -> int:
-    """Gives an object a material. Returns its index. One without any gets an empty slot before it: its strokes have the index 0, and keep their look."""
-    if not len(ob.data.materials):
-        ob.data.materials.append(None)
-    return materials.append(ob, material)
+    return materials.append(ob, made)

@@ -271,13 +271,10 @@ def _source_of_entry(entry) -> Source | None:
 
 
 def pixel_aspect(entry) -> float:
-    """Width by height of a pixel of what a background image shows."""
-    if entry.source == "IMAGE":
-        x, y = entry.image.display_aspect
-        return x / y
+    """Width by height of a pixel of what a background image shows. Blender leaves the pixel aspect of a clip's lens out of it."""
     clip = bpy_scene_clip() if entry.use_camera_clip else entry.clip
-    x, y = clip.display_aspect
-    return x / y * clip.tracking.camera.pixel_aspect
+    x, y = entry.image.display_aspect if entry.source == "IMAGE" else clip.display_aspect
+    return x / y
 
 
 def bpy_scene_clip():

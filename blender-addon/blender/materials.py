@@ -11,6 +11,9 @@ def of(ob: bpy.types.Object) -> list[bpy.types.Material | None]:
 
 
 def append(ob: bpy.types.Object, material: bpy.types.Material) -> int:
-    """Gives an object one more material. Returns its index."""
+    """Gives an object one more material. Returns its index. One without any gets an empty slot before it: its strokes have the index 0, and keep their
+    look."""
+    if not len(ob.data.materials):
+        ob.data.materials.append(None)
     ob.data.materials.append(material)
     return len(ob.data.materials) - 1

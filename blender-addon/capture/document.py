@@ -38,6 +38,8 @@ class Reading:
     """From picture numbers to scene frames."""
     missing: dict[str, list[int]] = field(default_factory=dict)
     """By part the scene frames without its contour within its track, as where the artist deleted it. Only with results."""
+    left: list[str] = field(default_factory=list)
+    """Limbs and marks that the document has not, since they name a part without contours."""
 
 
 def read(ob, results: bool = False, needed: bool = True, gaps: bool = False) -> Reading:
@@ -72,8 +74,8 @@ def reading(ob, results: bool = False, needed: bool = True) -> Iterator[float]:
         for part in found.parts
         if part.keys
     ]
-    document, _ = part_names.among(document, {part.name for part in found.parts if part.keys})
-    made = Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern), settings.frame_offset)
+    document, left = part_names.among(document, {part.name for part in found.parts if part.keys})
+    made = Reading(found, mapper, decisions, corrected, document, os.path.dirname(pattern), settings.frame_offset, left=left)
     if results:
         _add_results(ob, made)
     return made

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Iterable
+from functools import partial
 from typing import Any
 
 from ..common import kept
@@ -61,15 +62,13 @@ def listed(lost: Iterable[str]) -> str:
 def _mapped(fields: dict[str, Any], name_of: Callable[[str], str | None]) -> tuple[dict[str, Any], list[str]]:
     """Fields with other names of parts. What names a part whose new name is `None` is left out; returns that in words."""
     made, lost = dict(fields), []
-    if isinstance(fields.get("limbs"), list):
-        limbs = [(limb, _limb(limb, name_of)) for limb in fields["limbs"]]
-        made["limbs"] = [new for _, new in limbs if new is not None]
-        lost += [f"limb {limb.get('from')} to {limb.get('to')}" for limb, new in limbs if new is None]
-    for field, ends in _PAIRS.items():
+    ways = {"limbs": _limb, **{field: partial(_named, ends=ends) for field, ends in _PAIRS.items()}}
+    for field, way in ways.items():
         if isinstance(fields.get(field), list):
-            rows = [(row, _named(row, ends, name_of)) for row in fields[field]]
-            made[field] = [new for _, new in rows if new is not None]
-            lost += [_told(row) for row, new in rows if new is None]
+            # What is no object stays, for those who read it to say so.
+            rows = [(row, way(row, name_of=name_of) if isinstance(row, dict) else row) for row in fields[field]]
+            made[field] = [new for row, new in rows if new is not None or row is None]
+            lost += [_told(row) for row, new in rows if new is None and row is not None]
     if isinstance(fields.get("reshaped"), dict):
         made["reshaped"] = {name_of(name): keys for name, keys in fields["reshaped"].items() if name_of(name) is not None}
     return made, lost
@@ -85,8 +84,6 @@ def _named(row: Any, ends: Iterable[str], name_of: Callable[[str], str | None]) 
 
 def _limb(limb: Any, name_of: Callable[[str], str | None]) -> Any:
     """A limb with other names; `None` if a point of it is left out. It no longer carries parts that are."""
-    if not isinstance(limb, dict):
-        return limb
     made = dict(limb)
     for end in ("start", "end"):
         points = limb[end].get("points") if isinstance(limb.get(end), dict) else None
@@ -102,6 +99,8 @@ def _limb(limb: Any, name_of: Callable[[str], str | None]) -> Any:
 
 
 def _told(row: dict[str, Any]) -> str:
+    if "from" in row:
+        return f"limb {row['from']} to {row.get('to')}"
     if "front" in row:
         return f'"{row["front"]}" in front of "{row.get("behind")}"'
     return f'"{row.get("part")}" follows "{row["of"]}"' if "of" in row else f'what "{row.get("part")}" follows'

@@ -10,7 +10,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
+from ..blender import hierarchy, placement
 
 ENOUGH = 20_000
 """Number of points that show a plane."""
@@ -19,7 +21,8 @@ _FLAT = 1e-3
 
 
 def points(ob, name: str) -> np.ndarray:
-    """Points (N, 3) that show the plane of a layer; none if it is the object's own. Contours that lie on no plane show none."""
+    """Points (N, 3) in a layer's space that show its plane; none if it is the object's own. Contours that lie on no plane show none, and neither do
+    those that move against the layer."""
     layer = gp.find_layer(ob, name)
     own = _gathered(gp.handles(layer)) if layer is not None else _gathered(())
     if len(own):
@@ -27,8 +30,25 @@ def points(ob, name: str) -> np.ndarray:
     for contours in gp.layers(ob, ob.rototoon.contours_layer):
         drawn = _gathered(handle for handle, kind in gp.drawings(contours).values() if kind != gp.GENERATED)
         if len(drawn):
-            return drawn if _is_flat(drawn) else drawn[:0]
+            return _from(ob, contours, layer, drawn) if _is_flat(drawn) and not _moves(ob, contours, layer) else drawn[:0]
     return own
+
+
+def _from(ob, contours, layer, drawn: np.ndarray) -> np.ndarray:
+    """Points of a layer of contours as those of another layer, which may be `None`: a new one."""
+    ways = [cameras.need_size(ob, cameras.layer_to_world(ob, each)) for each in (contours, layer)]
+    if np.array_equal(*ways):
+        return drawn
+    matrix = np.linalg.inv(ways[1]) @ ways[0]
+    return drawn @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def _moves(ob, contours, layer) -> bool:
+    """Whether a layer of contours can move against another layer, which may be `None`: a new one."""
+    there = [each for each in (contours, layer) if each is not None]
+    carriers = {(each.parent, each.parent_bone) for each in there} | ({(None, "")} if layer is None else set())
+    carried = len(carriers) > 1 and (placement.is_animated(ob) or any(placement.is_animated(each.parent, carries=True) for each in there))
+    return carried or any(hierarchy.is_animated(ob, each.name) for each in there)
 
 
 def _gathered(handles: Iterable) -> np.ndarray:

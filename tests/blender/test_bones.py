@@ -402,3 +402,15 @@ def test_a_rig_in_rest_position_makes_no_clip(addon, tmp_path):
     ob.data.pose_position = "REST"
     with pytest.raises(RuntimeError, match='"Rig" is in Rest Position'):
         bpy.ops.rototoon.save_clip_from_armature(character="rig", motion="wave", folder=str(tmp_path))
+
+
+def test_a_pose_on_the_first_frame_that_is_not_keyed_yet_stays(addon, tmp_path):
+    put(addon, tmp_path, walk(addon))
+    ob = armature()
+    foot = ob.pose.bones["foot.L"]
+    foot.rotation_quaternion = Euler((0.5, 0, 0)).to_quaternion()
+    foot.keyframe_insert("rotation_quaternion", frame=1)
+    bpy.context.scene.frame_set(1)
+    foot.rotation_quaternion = Euler((0.9, 0, 0)).to_quaternion()
+    bpy.ops.rototoon.drive_bones(content="boy", motion="walk", folder=str(tmp_path), view="FRONT", start=1)
+    assert foot.rotation_quaternion.to_euler().x == pytest.approx(0.9, abs=1e-5)

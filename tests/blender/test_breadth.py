@@ -117,7 +117,7 @@ def test_pixel_aspect(addon, fake, tmp_path, aspect):
     tracked(addon, ob)
 
 
-@pytest.mark.parametrize("kind", ["image", "clip", "lens"])
+@pytest.mark.parametrize("kind", ["image", "clip"])
 def test_squeezed_footage_fills_the_frame_that_shows_it(addon, tmp_path, kind):
     """Pixels of two to one, in the scene and in the picture: Blender shows the picture over the whole frame."""
     ob = shots.set_up(tmp_path)
@@ -127,10 +127,9 @@ def test_squeezed_footage_fills_the_frame_that_shows_it(addon, tmp_path, kind):
         entry.image.display_aspect = (2, 1)
     else:
         entry.source, entry.clip = "MOVIE_CLIP", bpy.data.movieclips.load(bpy.path.abspath(entry.image.filepath))
-        if kind == "clip":
-            entry.clip.display_aspect = (1, 0.5)
-        else:
-            entry.clip.tracking.camera.pixel_aspect = 2
+        entry.clip.display_aspect = (1, 0.5)
+        # Blender draws backgrounds without it.
+        entry.clip.tracking.camera.pixel_aspect = 1.5
     bpy.context.view_layer.update()
     width, height = shots.SIZE
     for x, y in ((0, 0), (width, height), (width, 0)):

@@ -179,3 +179,16 @@ def test_curves_of_other_types_cover_and_are_said_not_to_be_cut(addon, kind):
         gp.put(line, "nurbs_order", np.full(6, 4, np.int8))
     bpy.ops.rototoon.hidden_lines()
     assert "not cut: 1 hidden line is a curve" in messages(addon) and len(content(addon, ob, "Lines", 1).sizes) == 6
+
+
+def test_the_materials_that_the_object_shows_count(addon):
+    """Slots that are linked to the object: the materials of its data are not seen."""
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    ob.data.materials.append(ob.data.materials[0].copy())
+    gp.put(cover(addon, ob, "Front", 1, (0, 0)), "material_index", np.array([1]))
+    slot = ob.material_slots[1]
+    clear = slot.material.copy()
+    clear.grease_pencil.fill_color[3] = 0.0
+    slot.link, slot.material = "OBJECT", clear
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, 3)]}

@@ -430,3 +430,13 @@ def is_seen(addon, ob, frame, folder):
                 for dy in range(-6, 7):
                     wanted[(y + dy).clip(0, height - 1), (x + dx).clip(0, width - 1)] = True
     return seen.any() and not (seen & ~wanted).any()
+
+
+def test_strokes_of_an_object_without_materials_keep_their_look(addon, film):
+    layer = film.data.layers.new("Rough")
+    layer.frames.new(1).drawing.add_strokes([2])
+    film.data.materials.clear()
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    rough = attribute(addon, film, "Rough", 1, "material_index")
+    assert [film.data.materials[i] for i in rough.tolist()] == [None]
+    assert all(film.data.materials[i] is not None for i in attribute(addon, film, "Lines", 1, "material_index").tolist())

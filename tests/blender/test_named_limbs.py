@@ -75,6 +75,18 @@ def test_parts_of_an_older_file_are_known_by_their_names(addon, doll, tmp_path):
     reshaped(addon, ob)
 
 
+def test_parts_of_an_open_file_are_known_after_an_update(addon, doll):
+    for part in doll.rototoon.parts:
+        part.known_as = ""
+    handlers = addon("handlers")
+    handlers.unregister()
+    handlers.register()
+    (later,) = [each for each in vars(handlers).values() if callable(each) and bpy.app.timers.is_registered(each)]
+    assert later() is None
+    doll.rototoon.parts[2].name = "arm"
+    reshaped(addon, doll)
+
+
 def remove(addon, ob, index):
     handle, _ = addon("blender.grease_pencil").drawings(shots.layer_of(ob))[1]
     handle.remove_strokes(indices=[index])
@@ -92,6 +104,8 @@ def test_marks_leave_with_their_part(addon, doll, tmp_path):
     bpy.ops.rototoon.depth_mark(front=names[3], behind=names[1])
     bpy.ops.rototoon.depth_mark(front=names[0], behind=names[1])
     remove(addon, doll, 3)
+    lost = f'since a part has no contours: "{names[3]}" in front of "{names[1]}"'
+    assert f"left out, {lost}" in said_of(addon, lambda: exported(tmp_path))
     assert exported(tmp_path)["depth_marks"] == [{"front": names[0], "behind": names[1]}], "the document stays of use before Match Contours, too"
     told = said_of(addon, lambda: reshaped(addon, doll))
     assert f'without effect, since a part has no contours: "{names[3]}" in front of "{names[1]}"' in told
@@ -111,3 +125,10 @@ def test_limbs_of_a_part_without_contours_are_named(addon, doll):
     assert f'"{arm}"; gone with it: limb neck to r_shoulder, limb r_shoulder to r_elbow, limb r_elbow to r_wrist' in told
     assert len(addon("style.limbs").defined(doll)) == count - 3
     reshaped(addon, doll)
+
+
+@pytest.mark.parametrize("field", ["limbs", "depth_marks", "follows"])
+def test_a_damaged_list_is_no_error_of_python(addon, doll, tmp_path, field):
+    doll.rototoon.extra = json.dumps({**json.loads(doll.rototoon.extra), field: [None, 3, [], "arm"]})
+    doll.rototoon.parts[0].name = "leg"
+    assert exported(tmp_path)[field] == [None, 3, [], "arm"]

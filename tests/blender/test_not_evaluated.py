@@ -70,6 +70,18 @@ def test_a_drawing_and_all_that_shows_it_are_read_where_they_are(addon, tmp_path
     assert square(addon, again(ob, tmp_path)) == pytest.approx(shots.square(0), abs=2e-3)
 
 
+@pytest.mark.every_version
+def test_lines_of_a_drawing_are_as_wide_as_they_are(addon, tmp_path):
+    """The widths of strokes are scaled with the object."""
+    ob, _, _ = keyed(addon, tmp_path)
+    ob.scale = (2, 2, 2)
+    bpy.context.view_layer.update()
+    radius_of = addon("blender.camera").radius_of
+    seen = radius_of(ob)
+    untick(ob)
+    assert radius_of(again(ob, tmp_path)) == pytest.approx(seen)
+
+
 def test_an_object_in_another_scene_than_its_camera(addon, tmp_path):
     ob, _, _ = keyed(addon, tmp_path)
     second = bpy.data.scenes.new("Second")

@@ -204,3 +204,18 @@ def test_materials_that_are_linked_to_the_object_are_its_colours(addon, painted,
     assert done.frames == (4, 5, 6)
     assert [name for _, name in bodies()] == ["Coat", "Paint edc29e"]
     assert painted.material_slots[index].material == coat
+
+
+def test_a_palette_is_taken_where_a_slot_is_linked_to_the_object(addon, painted, tmp_path):  # noqa: F811
+    coat = bpy.data.materials.new("Coat")
+    bpy.data.materials.create_gpencil_data(coat)
+    coat.grease_pencil.fill_color = (1.0, 0.0, 0.0, 1.0)
+    slot = painted.material_slots[painted.data.materials.find("Paint edc29e")]
+    slot.link, slot.material = "OBJECT", coat
+    path = tmp_path / "coat.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    document = json.loads(path.read_text())
+    bpy.ops.rototoon.import_document(filepath=str(path), into="ACTIVE")
+    assert sorted(own.material.name for own in painted.rototoon.palette) == sorted(document["palette"])
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    assert json.loads(path.read_text())["palette"] == document["palette"]

@@ -94,3 +94,26 @@ def test_contours_on_no_plane_leave_lines_on_that_of_the_object(addon, before):
     gp.put(handle, "position", points)
     bpy.ops.rototoon.trace_drawing(frames="CURRENT")
     assert depths(addon, before, "Lines") == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.usefixtures("library")
+@pytest.mark.parametrize("turned", [False, True])
+def test_lines_and_paint_lie_on_the_plane_of_contours_on_a_moved_layer(addon, before, tmp_path, turned):
+    layer = shots.layer_of(before)
+    layer.translation = (0, -1, 0)
+    if turned:
+        layer.rotation = (0.3, 0.1, 0.2)
+    bpy.context.view_layer.update()
+    world = np.array(addon("blender.camera").layer_to_world(before, layer))
+    gp = addon("blender.grease_pencil")
+    points = np.concatenate([gp.positions(h, int(gp.offsets(h)[-1])) for h, _ in gp.drawings(layer).values()])
+    points = points @ world[:3, :3].T + world[:3, 3]
+    centre = points.mean(0)
+    normal = np.linalg.svd(points - centre)[2][2]
+    assert bpy.ops.rototoon.trace_drawing(frames="CURRENT") == {"FINISHED"}
+    addon("scripting").fill_region(before, 1, (8.0, 8.0), (0.1, 0.2, 0.9))
+    to_world = np.array(before.matrix_world)
+    for name in ("Lines", "Paint"):
+        drawn = np.concatenate([gp.positions(h, int(gp.offsets(h)[-1])) for h, _ in gp.drawings(before.data.layers[name]).values()])
+        drawn = drawn @ to_world[:3, :3].T + to_world[:3, 3]
+        assert (drawn - centre) @ normal == pytest.approx(0, abs=1e-4)

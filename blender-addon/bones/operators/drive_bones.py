@@ -64,8 +64,9 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
         one = {key: value for key, value in self._file.items() if key != "clips"} | {"clips": [clip]}
         stance, mirrored = stance_of(one), self.mirror == "on"
         with kept(scene):
-            # The motion begins with the pose there, wherever the playhead is.
-            scene.frame_set(self.start)
+            # The motion begins with the pose there, wherever the playhead is. If it is there, the pose need not be keyed.
+            if (scene.frame_current, scene.frame_subframe) != (self.start, 0.0):
+                scene.frame_set(self.start)
             plane = driving.Plane.of(ob, scene, self.view)
             rig = driving.looks(ob, plane)
             if self.mirror == "auto":

@@ -8,7 +8,7 @@ from ...blender import grease_pencil as gp
 from ...blender import guard
 from ...blender import strokes as st
 from ...blender.errors import Problem
-from ...capture import document, snapping
+from ...capture import document, part_names, snapping
 from ...common import kept
 from ...common.operators import Guarded, OnShapes
 from ...common.wording import counted, listed
@@ -76,6 +76,7 @@ class ROTOTOON_OT_export_document(Guarded, OnShapes, bpy.types.Operator):
         if older:
             self.warn(older)
         self.warn(document.leave_out_missing(reading))
+        self.warn(f"left out, since a part has no contours: {part_names.listed(reading.left)}" if reading.left else "")
         beyond = document.reach(reading.document)
         document.round_off(reading.document)
         lines = self._add_lines(context.object, reading.document)
