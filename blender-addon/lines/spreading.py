@@ -155,10 +155,10 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
     made: list[tuple[int, st.Content]] = []
     left_out = 0
     if not shape:
-        made = _looked(edit, content, edit.edited) if looks else []
+        made = _looked(edit, content, edit.edited, gone) if looks else []
         gone[[place for place, _ in made]] = True
     elif edit.edited:
-        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]]) if looks else []
+        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]], gone) if looks else []
         gone[[place for place, _ in made]] = True
         pixels = to_complex(mapping, content.point["position"])
         touched = set().union(*(edit.numbers(i) for i in edit.reshaped()))
@@ -173,8 +173,8 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
                 made += new
         gone[[piece.index for pieces in there.values() for piece in pieces]] = True
         # Curves with handles or knots, and single points, get the look.
-        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]]) if looks else []
-        made += [each for each in rest if not gone[each[0]]]
+        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]], gone) if looks else []
+        made += rest
         gone[[place for place, _ in rest]] = True
     return _assembled(content, gone, made, edit.slots), left_out
 
@@ -205,10 +205,18 @@ def _pieces(content: st.Content, pixels: np.ndarray, number: int) -> list[_Piece
     places = np.flatnonzero((content.strokes(gp.TRACK) == number) & (content.sizes > 1) & (content.types == st.POLY))
     found = []
     for index in places.tolist():
-        points, along = np.arange(*content.starts[index : index + 2]), content.point.get(gp.ALONG)
-        for part, shares in _stretches(content.point["position"][points], None if along is None else along[points].astype(np.float64)):
+        points = np.arange(*content.starts[index : index + 2])
+        for part, shares in _stretches(content.point["position"][points], _along(content, points)):
             found.append(_Piece(index, points[part], shares, pixels[points[part]], bool(content.strokes("cyclic")[index])))
     return sorted(found, key=lambda piece: piece.shares[0])
+
+
+def _along(content: st.Content, points: np.ndarray) -> np.ndarray | None:
+    """The shares of a stroke's points; `None` if some were drawn or joined to it since, and so have none on it."""
+    along, lines = content.point.get(gp.ALONG), content.point.get(gp.LINE)
+    if along is None or lines is None or not lines[points].all() or np.ptp(lines[points]):
+        return None
+    return along[points].astype(np.float64)
 
 
 def _stretches(points: np.ndarray, along: np.ndarray | None) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -277,20 +285,27 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[
             continue
         points = mapping.to_layer(np.stack([line.points.real, line.points.imag], 1)).astype(np.float32)
         made = _like(content, line.piece, line.where, points)
-        made.set_strokes("cyclic", np.array([closed and len(lines) == 1 and line.begins and line.ends]))
+        made.set_strokes("cyclic", np.array([closed and _is_closed(line, lines)]))
         made.set_strokes(gp.TRACK, np.array([number], np.int32))
         if looks:
-            _look_like(made, edit.content, _sources(edit.content, [i])[0])
+            _look_like(made, edit.content, _sources(edit.content, [i])[0], _changed(content, line.piece.index))
         found.append((line.piece.index, made))
     return found
 
 
-def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
-    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices."""
+def _is_closed(line: _Line, lines: list[_Line]) -> bool:
+    """Whether a line of a closed stroke is closed on another frame: it is there already, or it is whole."""
+    if line.piece.closed:
+        return sum(other.piece.index == line.piece.index for other in lines) == 1
+    return len(lines) == 1 and line.begins and line.ends
+
+
+def _looked(edit: Edit, content: st.Content, which: Sequence[int], gone: np.ndarray) -> list[tuple[int, st.Content]]:
+    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices. Those that are `gone` get none."""
     tracks, made = content.strokes(gp.TRACK), {}
     for source in _sources(edit.content, which):
-        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0)):
-            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source)
+        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0) & ~gone):
+            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source, _changed(content, place))
     return sorted(made.items(), key=lambda each: each[0])
 
 
@@ -329,10 +344,11 @@ def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], befo
                 lines[-1] = lines[-1].with_next(each)
             else:
                 lines.append(each)
-    if closed and len(lines) > 1 and lines[-1].ends and lines[0].begins and lines[-1].piece.index == lines[0].piece.index:
+    first = next((k for k, each in enumerate(lines[:-1]) if each.piece.index == lines[-1].piece.index), None) if closed else None
+    if first is not None and lines[-1].ends and lines[first].begins:
         # What lies on both sides of the seam of a closed stroke.
-        lines[0] = lines.pop().with_next(lines[0])
-        lines[0].begins = lines[0].ends = False
+        lines[first] = lines.pop().with_next(lines[first])
+        lines[first].begins = lines[first].ends = False
     return lines
 
 
@@ -397,7 +413,7 @@ class _Source:
     """Indices of the points that give the rest, by their share."""
     shares: np.ndarray
     without: set[str]
-    """What is no look of the line: Remove Hidden Lines has changed it."""
+    """As `_changed`."""
 
 
 def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
@@ -407,20 +423,24 @@ def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
     for i in which:
         if i in done:
             continue
-        mine, without = np.array([i]), set()
-        if left[i] and undrawn[i]:
-            without = {"opacity"}
-        elif left[i]:
-            same = left & (tracks == tracks[i])
-            mine = np.flatnonzero(same & ~undrawn)
-            if (same & undrawn).any():
-                # The fill is with the outline alone.
-                without = {"fill_id" if gp.FILL_BY_ID else "material_index"}
+        mine = np.flatnonzero(left & (tracks == tracks[i]) & ~undrawn) if left[i] and not undrawn[i] else np.array([i])
         done |= set(mine.tolist())
         points, shares = st.ranges(content.starts[mine], content.sizes[mine]), np.concatenate([_shares(content, k) for k in mine])
         order = np.argsort(shares, kind="stable")
-        found.append(_Source(i, points[order], shares[order], without))
+        found.append(_Source(i, points[order], shares[order], _changed(content, i)))
     return found
+
+
+def _changed(content: st.Content, i: int) -> set[str]:
+    """What is no look of a stroke, since Remove Hidden Lines has changed it."""
+    left = left_by_rototoon(content)
+    if not left[i]:
+        return set()
+    undrawn, tracks = st.undrawn(content), content.strokes(gp.TRACK)
+    if undrawn[i]:
+        return {"opacity"}
+    # The fill is with the outline alone.
+    return {"fill_id" if gp.FILL_BY_ID else "material_index"} if (left & undrawn & (tracks == tracks[i])).any() else set()
 
 
 def _shares(content: st.Content, i: int) -> np.ndarray:
@@ -431,11 +451,11 @@ def _shares(content: st.Content, i: int) -> np.ndarray:
     return dr.shares(content.point["position"][span])
 
 
-def _look_like(made: st.Content, content: st.Content, source: _Source) -> None:
-    """Gives a stroke the look of strokes of another drawing, by the share of the length."""
+def _look_like(made: st.Content, content: st.Content, source: _Source, keeps: set[str]) -> None:
+    """Gives a stroke the look of strokes of another drawing, by the share of the length. What it `keeps` stays."""
     where, known = _shares(made, 0), source.shares
     for name in _looks_of(content):
-        if name in source.without:
+        if name in source.without | keeps:
             continue
         if name in content.curve:
             _have(made, content, name)

@@ -1,0 +1,120 @@
+"""Edit on All Frames, with frames on which the artist or Remove Hidden Lines has changed the same strokes. With the real library."""
+
+import bpy
+import numpy as np
+import pytest
+from line_stage import film, pictures, traced  # noqa: F401 - fixtures
+from line_stage import handle_of, number_of
+from test_lines_edited import cover, edit, radii_of
+
+RAISED = np.float32([0, 0, 0.1])
+OTHER = 4
+
+
+def strokes_of(addon, ob, number, frame=OTHER):
+    """The strokes of a number on a frame: points and whether they are closed."""
+    content, gp = addon("blender.strokes").read(handle_of(addon, ob, "Lines", frame)), addon("blender.grease_pencil")
+    rows = zip(content.starts, content.starts[1:], content.strokes(gp.TRACK), content.strokes("cyclic"))
+    return [(content.point["position"][a:b], bool(closed)) for a, b, own, closed in rows if own == number]
+
+
+def change(addon, ob, number, rows_of, after=lambda content: None):
+    """Gives a stroke on the other frame other points of its drawing: `rows_of(spans)` gets the points of each stroke by number. All strokes of which it
+    takes points become this one."""
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    handle = handle_of(addon, ob, "Lines", OTHER)
+    content = strokes.read(handle)
+    tracks = content.strokes(gp.TRACK).tolist()
+    rows = rows_of({own: np.arange(*content.starts[i : i + 2]) for i, own in enumerate(tracks)})
+    taken = np.unique(np.searchsorted(content.starts, rows, "right") - 1)
+    one = strokes.chosen(content, [tracks.index(number)])
+    made = strokes.Content(np.array([len(rows)], np.int32), one.types, {k: v[rows] for k, v in content.point.items()}, one.curve, one.kinds)
+    after(made)
+    rest = strokes.chosen(content, [i for i in range(len(tracks)) if i not in taken])
+    strokes.write(handle, strokes.joined(rest, made))
+
+
+def raise_on_first(addon, ob, number):
+    edit(addon, ob, 1, number, lambda points: points + RAISED)
+    bpy.ops.rototoon.spread_edits()
+
+
+@pytest.mark.parametrize("end", [0, -1])
+def test_what_was_drawn_on_to_a_stroke_there_stays(addon, traced, end):
+    gp, arm = addon("blender.grease_pencil"), number_of(addon, traced, 4)
+
+    def longer(spans):
+        own = spans[arm]
+        return np.concatenate([own[:1].repeat(5), own] if end == 0 else [own, own[-1:].repeat(5)])
+
+    def draw(made):
+        new = slice(0, 5) if end == 0 else slice(-5, None)
+        way = np.linspace(0.1, 0.5, 5)[:, None] * np.float32([1, 0, 0])
+        made.point["position"][new] += -way[::-1] if end == 0 else way
+        for name in (gp.LINE, gp.ALONG, gp.TRACKED):
+            made.point[name][new] = 0
+
+    change(addon, traced, arm, longer, draw)
+    ((before, _),) = strokes_of(addon, traced, arm)
+    raise_on_first(addon, traced, arm)
+    ((now, _),) = strokes_of(addon, traced, arm)
+    assert len(now) == len(before) and np.linalg.norm(now[end] - before[end]) == pytest.approx(0.1, abs=0.06)
+
+
+def test_strokes_that_were_joined_there_stay_joined(addon, traced):
+    arm, mouth = number_of(addon, traced, 4), number_of(addon, traced, 3)
+    change(addon, traced, arm, lambda spans: np.concatenate([spans[arm], spans[mouth]]))
+    ((before, _),) = strokes_of(addon, traced, arm)
+    raise_on_first(addon, traced, arm)
+    ((now, _),) = strokes_of(addon, traced, arm)
+    assert len(now) == len(before)
+
+
+@pytest.mark.parametrize("rows_of", [lambda own: own[1:], lambda own: np.roll(own, len(own) // 2)], ids=["without its first point", "begun elsewhere"])
+def test_a_closed_stroke_stays_closed(addon, traced, rows_of):
+    body = number_of(addon, traced, 0)
+    change(addon, traced, body, lambda spans: rows_of(spans[body]))
+    raise_on_first(addon, traced, body)
+    ((_, closed),) = strokes_of(addon, traced, body)
+    assert closed
+
+
+@pytest.fixture
+def filled(addon, traced):
+    """The film, with a fill of the body, whose line is cut on the other frame. Returns the object and the number of the body."""
+    gp, strokes, body = addon("blender.grease_pencil"), addon("blender.strokes"), number_of(addon, traced, 0)
+    if not gp.FILL_BY_ID:
+        pytest.skip("fills are in materials")
+    for frame in range(1, 7):
+        handle = handle_of(addon, traced, "Lines", frame)
+        content = strokes.read(handle)
+        content.set_strokes("fill_id", np.where(content.strokes(gp.TRACK) == body, 1, 0).astype(np.int32))
+        strokes.write(handle, content)
+    cover(addon, traced, OTHER)
+    bpy.context.scene.frame_set(OTHER)
+    bpy.ops.rototoon.hidden_lines()
+    bpy.context.scene.frame_set(1)
+    return traced, body
+
+
+@pytest.mark.parametrize("shape, look", [(True, False), (False, True), (True, True)])
+def test_hidden_lines_stay_hidden_there(addon, filled, shape, look):
+    gp, strokes = addon("blender.grease_pencil"), addon("blender.strokes")
+    ob, body = filled
+
+    def state():
+        content = strokes.read(handle_of(addon, ob, "Lines", OTHER))
+        mine = np.flatnonzero(content.strokes(gp.TRACK) == body)
+        opacity = content.point["opacity"][content.starts[:-1][mine]]
+        return list(zip(content.strokes("fill_id")[mine], opacity, content.strokes("cyclic")[mine]))
+
+    before = state()
+    assert [tuple(map(bool, each)) for each in before] == [(True, False, True), (False, True, False), (False, True, False)]
+    if look:
+        handle = handle_of(addon, ob, "Lines", 1)
+        gp.put(handle, "radius", np.full(int(gp.offsets(handle)[-1]), 0.3))
+    if shape:
+        edit(addon, ob, 1, body, lambda points: points + RAISED)
+    bpy.ops.rototoon.spread_edits()
+    assert state() == before
+    assert not look or all(np.allclose(each, 0.3) for each in radii_of(addon, ob, OTHER).values())
