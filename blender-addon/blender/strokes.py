@@ -246,7 +246,7 @@ def lineless(ob, content: Content) -> np.ndarray:
     """For each stroke: whether no line is drawn along it. A fill may be there all the same."""
     if gp.FILL_BY_ID:
         return undrawn(content) | content.strokes("hide_stroke")
-    lined = np.array([_shows_line(material) for material in ob.data.materials] or [True])
+    lined = np.array([_shows_line(material) for material in materials.of(ob)] or [True])
     return undrawn(content) | ~lined[np.clip(content.strokes("material_index"), 0, len(lined) - 1)]
 
 

@@ -10,14 +10,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from ..blender import fill_materials
+from ..blender import fill_materials, materials
 
 
 def take(ob, looks: Mapping[str, Sequence[float]]) -> None:
     """Gives an object the colours of a document's palette: names and looks, sRGB. The colours that it has stay."""
     known = {own.material for own in ob.rototoon.palette}
     for name, colour in looks.items():
-        material = ob.data.materials[fill_materials.named(ob, name, np.asarray(colour, np.float64))]
+        place = fill_materials.named(ob, name, np.asarray(colour, np.float64))
+        material = materials.of(ob)[place]
         if material not in known:
             known.add(material)
             ob.rototoon.palette.add().material = material
@@ -25,5 +26,5 @@ def take(ob, looks: Mapping[str, Sequence[float]]) -> None:
 
 def fields(ob) -> dict[str, list[float]]:
     """The colours in the form of a document."""
-    materials = [own.material for own in ob.rototoon.palette if fill_materials.is_colour(own.material)]
-    return {material.name: fill_materials.look(material).clip(0, 1).round(6).tolist() for material in materials}
+    colours = [own.material for own in ob.rototoon.palette if fill_materials.is_colour(own.material)]
+    return {material.name: fill_materials.look(material).clip(0, 1).round(6).tolist() for material in colours}

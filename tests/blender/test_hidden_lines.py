@@ -134,6 +134,32 @@ def test_lines_behind_a_fill_that_does_not_hide_them_stay(addon, change, named):
     assert ('"Front": the fills are transparent, masked or blended' in messages(addon)) == named
 
 
+@pytest.mark.parametrize("hides", [False, True])
+def test_the_fill_is_that_of_the_material_that_the_object_shows(addon, hides):
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    handle = cover(addon, ob, "Front", 1, (0, 0))
+    place = int(gp.value(handle, "material_index", 1)[0])
+    slot, seen = ob.material_slots[place], ob.data.materials[place].copy()
+    seen.grease_pencil.fill_color[3], ob.data.materials[place].grease_pencil.fill_color[3] = float(hides), float(not hides)
+    slot.link, slot.material = "OBJECT", seen
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)] if hides else [(-3, 3)]}
+
+
+@pytest.mark.parametrize("slot", ["none", "empty", "mesh"])
+def test_a_fill_without_a_material_hides_lines(addon, slot):
+    ob = behind(addon)
+    if not addon("blender.grease_pencil").FILL_BY_ID:
+        pytest.skip("materials fill")
+    cover(addon, ob, "Front", 1, (0, 0))
+    if slot == "none":
+        ob.data.materials.clear()
+    else:
+        ob.data.materials[0] = bpy.data.materials.new("Mesh") if slot == "mesh" else None
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)]}
+
+
 def test_a_mask_that_is_switched_off_changes_nothing(addon):
     ob, gp = behind(addon), addon("blender.grease_pencil")
     layer = ob.data.layers["Front"]
