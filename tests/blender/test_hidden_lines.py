@@ -71,6 +71,23 @@ def test_frames_after_the_range_show_what_they_showed(addon, action):
     assert list(ends(addon, ob)) == [1, 20]
 
 
+@pytest.mark.parametrize("frames, drawn", [("CURRENT", 5), ("RANGE", 15)])
+def test_what_is_moved_aside_ends_with_its_drawing(addon, frames, drawn):
+    ob = behind(addon, ("Lines", "Front", "Front 2"))
+    cover(addon, ob, "Front", 1, (0, 0))
+    add(addon, ob, "Lines", drawn, [level(-2, 2)])
+    bpy.ops.rototoon.hidden_lines(frames=frames, action="MOVE")
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)], drawn: [(-2, 2)]}
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], drawn: []}
+    bpy.context.scene.frame_set(drawn)
+    bpy.ops.rototoon.hidden_lines(action="MOVE")
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], drawn: [(-1, 1)]}
+    bpy.context.scene.frame_set(1)
+    cover(addon, ob, "Front 2", 1, (2.5, 0), 0.2)
+    bpy.ops.rototoon.hidden_lines(action="MOVE")
+    assert ends(addon, ob, "Lines Hidden")[drawn] == [(-1, 1)]
+
+
 def test_nothing_is_added_after_the_range_where_nothing_changes_there(addon):
     ob = behind(addon)
     cover(addon, ob, "Front", 1, (0, 0))
