@@ -118,7 +118,7 @@ class Mapping:
 
 def radius_of(ob) -> float:
     """How large a stroke's radius of 1 is in the world: Blender scales it with the object, and not with the layer."""
-    return _mean_scale(np.array(ob.matrix_world, np.float64))
+    return _mean_scale(np.array(world.matrix_of(ob), np.float64))
 
 
 def _mean_scale(matrix: np.ndarray) -> float:
