@@ -10,6 +10,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
 
 ENOUGH = 20_000
@@ -27,8 +28,17 @@ def points(ob, name: str) -> np.ndarray:
     for contours in gp.layers(ob, ob.rototoon.contours_layer):
         drawn = _gathered(handle for handle, kind in gp.drawings(contours).values() if kind != gp.GENERATED)
         if len(drawn):
-            return drawn if _is_flat(drawn) else drawn[:0]
+            return _moved(ob, contours, layer, drawn) if _is_flat(drawn) else drawn[:0]
     return own
+
+
+def _moved(ob, source, target, drawn: np.ndarray) -> np.ndarray:
+    """Points of one layer in the space of another, as they lie on the current frame. The target may not exist yet."""
+    there, here = (cameras.need_size(ob, cameras.layer_to_world(ob, layer)) for layer in (source, target))
+    if np.array_equal(there, here):
+        return drawn
+    matrix = np.linalg.inv(here) @ there
+    return drawn @ matrix[:3, :3].T + matrix[:3, 3]
 
 
 def _gathered(handles: Iterable) -> np.ndarray:

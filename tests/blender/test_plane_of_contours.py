@@ -94,3 +94,12 @@ def test_contours_on_no_plane_leave_lines_on_that_of_the_object(addon, before):
     gp.put(handle, "position", points)
     bpy.ops.rototoon.trace_drawing(frames="CURRENT")
     assert depths(addon, before, "Lines") == pytest.approx(0.0, abs=1e-5)
+
+
+@pytest.mark.usefixtures("library")
+def test_lines_lie_on_the_plane_of_a_layer_that_was_moved(addon, before):
+    layer = before.data.layers["Contours"]
+    layer.translation = (0, 0.5, 0)
+    bpy.context.view_layer.update()
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    assert depths(addon, before, "Lines") == pytest.approx(DEPTH + 0.5, abs=1e-5)
