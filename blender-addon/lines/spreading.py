@@ -88,6 +88,8 @@ class Run:
     """Complex pixels: how far each point was moved."""
     was: np.ndarray
     """Complex pixels: where each point was."""
+    now: np.ndarray
+    """The share of each point on the edited stroke as it is now."""
 
 
 def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slots, chosen: np.ndarray | None = None) -> Edit:
@@ -237,7 +239,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     a, b = edit.content.starts[i : i + 2]
     lines = edit.content.point[gp.LINE][a:b].copy()
     along = edit.content.point[gp.ALONG][a:b].astype(np.float64)
-    old, new = before[a:b].copy(), now[a:b]
+    old, new, after = before[a:b].copy(), now[a:b], dr.shares(edit.content.point["position"][a:b])
     known = np.flatnonzero(lines)
     for k in np.flatnonzero(lines == 0):
         near = known[np.argmin(np.abs(known - k))]
@@ -248,7 +250,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
         if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, lines, start, k):
             continue
         span = slice(start, k)
-        found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span]))
+        found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span], after[span]))
         start = k
     return found
 
@@ -287,6 +289,10 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[
         made = _like(content, line.piece, line.where, points)
         made.set_strokes("cyclic", np.array([closed and _is_closed(line, lines)]))
         made.set_strokes(gp.TRACK, np.array([number], np.int32))
+        dr.mark_places(made)
+        if not line.is_whole():
+            # The next edit goes on where this one is.
+            made.point[gp.ALONG] = line.now.astype(np.float32)
         if looks:
             _look_like(made, edit.content, _sources(edit.content, [i])[0], _changed(content, line.piece.index))
         found.append((line.piece.index, made))
@@ -317,6 +323,8 @@ class _Line:
     """Complex pixels."""
     where: np.ndarray
     """The share of each point on its stroke there."""
+    now: np.ndarray
+    """The share of each point on the edited stroke as it is now."""
     piece: _Piece
     """What gives the attributes."""
     begins: bool
@@ -325,8 +333,16 @@ class _Line:
 
     def with_next(self, other: _Line) -> _Line:
         """Both in one."""
-        points, where = np.concatenate([self.points, other.points]), np.concatenate([self.where, other.where])
-        return _Line(points, where, self.piece, self.begins, other.ends)
+        rows = (np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("points", "where", "now"))
+        return _Line(*rows, self.piece, self.begins, other.ends)
+
+    def turned(self) -> _Line:
+        """In the other direction."""
+        return _Line(self.points[::-1], self.where[::-1], self.now[::-1], self.piece, self.ends, self.begins)
+
+    def is_whole(self) -> bool:
+        """Whether all of the edited stroke is there."""
+        return self.now[0] < WHOLE and self.now[-1] > 1 - WHOLE
 
 
 def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], before: np.ndarray, closed: bool) -> list[_Line]:
@@ -338,7 +354,7 @@ def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], befo
         stretches = [_stretch(run, piece, was, samples) for piece in there[run.number]]
         stretches = [each for each in stretches if each is not None]
         if run.shares[-1] < run.shares[0]:
-            stretches = [_Line(each.points[::-1], each.where[::-1], each.piece, each.ends, each.begins) for each in reversed(stretches)]
+            stretches = [each.turned() for each in reversed(stretches)]
         for k, each in enumerate(stretches):
             if lines and k == 0 and lines[-1].ends and each.begins:
                 lines[-1] = lines[-1].with_next(each)
@@ -361,15 +377,15 @@ def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _
         return None
     if shares[0] == shares[-1]:
         # Points that were drawn since, all at one place of the stroke.
-        where, delta = run.shares, run.moved
+        where, delta, now = run.shares, run.moved, run.now
     else:
         where = np.concatenate([[first], here[(here > first) & (here < last)], [last]])
-        delta = _interpolated(where, shares, moved)
+        delta, now = _interpolated(where, shares, moved), np.interp(where, shares, run.now[order])
     known = (samples >= here[0]) & (samples <= here[-1])
     known = known if known.sum() > 1 else np.ones(len(samples), bool)
     factor = similarity(was[known], _interpolated(samples[known], here, piece.pixels), samples[known], where, piece.closed)
     points = _interpolated(where, here, piece.pixels) + factor * delta
-    return _Line(points, where, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
+    return _Line(points, where, now, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
 
 
 def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
@@ -494,5 +510,5 @@ def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.C
         return whole
     result = st.chosen(whole, np.array([k for *_, k in sorted(places)]))
     new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
-    dr.mark(result, slots, new)
+    dr.mark_looks(result, slots, new)
     return result

@@ -4,8 +4,8 @@ import bpy
 import numpy as np
 import pytest
 from line_stage import film, pictures, traced  # noqa: F401 - fixtures
-from line_stage import handle_of, number_of
-from test_lines_edited import cover, edit, radii_of
+from line_stage import attribute, away, handle_of, number_of
+from test_lines_edited import cover, cut_elsewhere, edit, radii_of
 
 RAISED = np.float32([0, 0, 0.1])
 OTHER = 4
@@ -77,6 +77,36 @@ def test_a_closed_stroke_stays_closed(addon, traced, rows_of):
     raise_on_first(addon, traced, body)
     ((_, closed),) = strokes_of(addon, traced, body)
     assert closed
+
+
+def bulges(addon, ob, number):
+    """Raises a stroke near its begin, and then near its end. Returns what it is on the other frame."""
+    for centre in (0.2, 0.8):
+        edit(addon, ob, 1, number, lambda points, at=centre: points + np.exp(-(((np.linspace(0, 1, len(points)) - at) / 0.1) ** 2))[:, None] * 5 * RAISED)
+        bpy.ops.rototoon.spread_edits()
+    return [points for points, _ in strokes_of(addon, ob, number)]
+
+
+def test_pieces_there_are_reshaped_over_their_own_stretch_again(addon, traced):
+    arm = number_of(addon, traced, 4)
+    (whole,) = bulges(addon, traced, arm)
+    bpy.ops.wm.open_mainfile(filepath=bpy.data.filepath)
+    ob = bpy.context.object
+    cut_elsewhere(addon, ob, OTHER, arm, [(0, 0.45), (0.55, 1)])
+    pieces = bulges(addon, ob, arm)
+    assert len(pieces) == 2 and max(away(points, whole) for points in pieces) < 0.05
+
+
+def test_a_look_leaves_what_remove_hidden_lines_left_where_it_was_on_its_stroke(addon, traced):
+    gp = addon("blender.grease_pencil")
+    cover(addon, traced, 2)
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.hidden_lines()
+    before = attribute(addon, traced, "Lines", 2, gp.ALONG)
+    handle = handle_of(addon, traced, "Lines", 2)
+    gp.put(handle, "radius", np.full(len(before), 0.3))
+    bpy.ops.rototoon.spread_edits()
+    assert np.allclose(attribute(addon, traced, "Lines", 2, gp.ALONG), before, atol=1e-3)
 
 
 @pytest.fixture
