@@ -349,9 +349,8 @@ def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], befo
     """The lines of all runs on another frame: one, unless a stroke is cut there."""
     lines: list[_Line] = []
     for run in parts:
-        samples = np.linspace(0, 1, SAMPLES)
-        was = _original(edit, run.number, samples, before)
-        stretches = [_stretch(run, piece, was, samples) for piece in there[run.number]]
+        was = _original(edit, run.number, before)
+        stretches = [_stretch(run, piece, *was) for piece in there[run.number]]
         stretches = [each for each in stretches if each is not None]
         if run.shares[-1] < run.shares[0]:
             stretches = [each.turned() for each in reversed(stretches)]
@@ -368,8 +367,8 @@ def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], befo
     return lines
 
 
-def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _Line | None:
-    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the `samples`."""
+def _stretch(run: Run, piece: _Piece, known: np.ndarray, was: np.ndarray) -> _Line | None:
+    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the shares that are `known`."""
     order = np.argsort(run.shares, kind="stable")
     shares, moved, here = run.shares[order], run.moved[order], piece.shares
     first, last = max(shares[0], here[0]), min(shares[-1], here[-1])
@@ -381,19 +380,20 @@ def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _
     else:
         where = np.concatenate([[first], here[(here > first) & (here < last)], [last]])
         delta, now = _interpolated(where, shares, moved), np.interp(where, shares, run.now[order])
-    known = (samples >= here[0]) & (samples <= here[-1])
-    known = known if known.sum() > 1 else np.ones(len(samples), bool)
-    factor = similarity(was[known], _interpolated(samples[known], here, piece.pixels), samples[known], where, piece.closed)
+    # Only what is on both frames tells how the stroke turns and grows.
+    low, high = max(known[0], here[0]), min(known[-1], here[-1])
+    samples = np.linspace(*((low, high) if low < high else (0, 1)), SAMPLES)
+    factor = similarity(*(_interpolated(samples, *each) for each in ((known, was), (here, piece.pixels))), samples, where, piece.closed)
     points = _interpolated(where, here, piece.pixels) + factor * delta
     return _Line(points, where, now, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
 
 
-def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """A stroke of the edited frame as it was, at shares."""
+def _original(edit: Edit, number: int, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What there is of a stroke on the edited frame, as it was: shares and complex pixels."""
     mine = np.flatnonzero(edit.content.point[gp.LINE] == number)
     along = edit.content.point[gp.ALONG][mine].astype(np.float64)
     order = np.argsort(along, kind="stable")
-    return _interpolated(samples, along[order], before[mine][order])
+    return along[order], before[mine][order]
 
 
 def _interpolated(where: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -97,6 +97,17 @@ def test_pieces_there_are_reshaped_over_their_own_stretch_again(addon, traced):
     assert len(pieces) == 2 and max(away(points, whole) for points in pieces) < 0.05
 
 
+def test_an_edit_of_a_shortened_stroke_is_as_large_on_a_piece_there(addon, traced):
+    arm = number_of(addon, traced, 4)
+    edit(addon, traced, 1, arm, lambda points: points + RAISED)
+    cut_elsewhere(addon, traced, 1, arm, [(0.5, 0.8)])
+    cut_elsewhere(addon, traced, OTHER, arm, [(0.7, 1)])
+    ((before, _),) = strokes_of(addon, traced, arm)
+    bpy.ops.rototoon.spread_edits()
+    ((now, _),) = strokes_of(addon, traced, arm)
+    assert np.linalg.norm(now[0] - before[0]) == pytest.approx(0.1, abs=0.01)
+
+
 def test_a_look_leaves_what_remove_hidden_lines_left_where_it_was_on_its_stroke(addon, traced):
     gp = addon("blender.grease_pencil")
     cover(addon, traced, 2)
