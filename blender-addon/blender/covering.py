@@ -19,7 +19,7 @@ OPAQUE = 0.999
 
 def of_fills(ob, layer, content: st.Content) -> np.ndarray:
     """The opacity of each stroke's fill. Strokes with one common fill have that of the first of them."""
-    alphas = np.array([_alpha(material) for material in materials.of(ob)] or [0.0])
+    alphas = np.array([_alpha(material) for material in materials.of(ob)] or [_alpha(None)])
     index = np.clip(content.strokes("material_index"), 0, len(alphas) - 1)
     own = alphas[index] * content.strokes("fill_opacity") * layer.opacity
     fills = st.filled(ob, content)
@@ -46,9 +46,11 @@ def is_masked(layer) -> bool:
 
 
 def _alpha(material) -> float:
-    """The opacity of a material's fill."""
+    """The opacity of a material's fill. Blender fills with an opaque colour of its own where there is no material for drawings."""
     style = material.grease_pencil if material is not None else None
-    if style is None or style.hide:
+    if style is None:
+        return 1.0
+    if style.hide:
         return 0.0
     alphas = [style.fill_color[3], *([style.mix_color[3]] if style.fill_style == "GRADIENT" else [])]
     return min(alphas)

@@ -138,21 +138,31 @@ def keep(ob, layer: Layer) -> None:
     gp.set_keyframe_type(target, dict.fromkeys(layer.edited, gp.KEYFRAME))
 
 
-def mark(content: st.Content, slots: marks.Slots, chosen: np.ndarray | None = None) -> None:
-    """Notes for each point where it is, on which stroke, and where on it: an edit is measured from there. `chosen` are the strokes;
-    all by default. `slots` are the material slots of the drawing, which `marks.remember` shall keep."""
-    points, tracks = content.point["position"], content.strokes(gp.TRACK)
+def mark(content: st.Content, slots: marks.Slots) -> None:
+    """Notes for each point where it is, on which stroke, and where on it, and the looks of strokes: an edit is measured from there. `slots` are the
+    material slots of the drawing, which `marks.remember` shall keep."""
+    mark_places(content)
+    mark_looks(content, slots)
+
+
+def mark_places(content: st.Content, chosen: np.ndarray | None = None, along: np.ndarray | None = None) -> None:
+    """The same without looks, for the strokes `chosen`. `along` are those whose shares are noted. Both are all by default."""
+    points, starts, tracks = content.point["position"], content.starts, content.strokes(gp.TRACK)
     for name in (gp.TRACKED, gp.LINE, gp.ALONG):
         if name not in content.point:
             content.kinds[name], content.point[name] = gp.TYPES[name][0], gp.blank(name, len(points))
-    starts, looks = content.starts, marks.stroke_looks(content, slots.now)
-    known = content.strokes(gp.LOOK).copy()
-    content.set_strokes(gp.LOOK, looks if chosen is None else np.where(chosen, looks, known))
     for i in range(len(content.sizes)) if chosen is None else np.flatnonzero(chosen):
         span = slice(starts[i], starts[i + 1])
         content.point[gp.TRACKED][span] = points[span]
         content.point[gp.LINE][span] = tracks[i]
-        content.point[gp.ALONG][span] = shares(points[span])
+        if along is None or along[i]:
+            content.point[gp.ALONG][span] = shares(points[span])
+
+
+def mark_looks(content: st.Content, slots: marks.Slots, chosen: np.ndarray | None = None) -> None:
+    """The same for looks alone."""
+    looks = marks.stroke_looks(content, slots.now)
+    content.set_strokes(gp.LOOK, looks if chosen is None else np.where(chosen, looks, content.strokes(gp.LOOK)))
 
 
 LOOKS = ("radius", "opacity", "vertex_color", "material_index", "fill_color", "fill_id", "hide_stroke")

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 from rototoon.lines import Traced
@@ -59,14 +60,21 @@ def strokes(own: Result, others: Sequence[Result], offset: int) -> set[numbers.K
         for frame, key, *line in other.lines(offset) if theirs else ():
             if key in theirs:
                 there.setdefault(frame, []).append(line)
-    inks = {}
-    for frame, drawn in there.items():
-        lines, widths = zip(*drawn)
-        inks[frame] = off_ink.Ink(lines, np.concatenate(widths), (shown["width"], shown["height"]))
     on: dict[numbers.Key, float] = {}
     lengths: dict[numbers.Key, int] = {}
-    for frame, key, line, _ in own.lines(offset) if inks else ():
-        if key not in known:
-            lengths[key] = lengths.get(key, 0) + len(line)
-            on[key] = on.get(key, 0.0) + (len(line) * (1 - inks[frame].off(line)) if frame in inks else 0.0)
+    # One frame after the other: the places of a whole film are as large as its pictures.
+    for frame, mine in groupby(own.lines(offset) if there else (), key=lambda each: each[0]):
+        ink = _ink(there.pop(frame, []), (shown["width"], shown["height"]))
+        for _, key, line, _ in mine:
+            if key not in known:
+                lengths[key] = lengths.get(key, 0) + len(line)
+                on[key] = on.get(key, 0.0) + (len(line) * (1 - ink.off(line)) if ink is not None else 0.0)
     return {key for key, length in lengths.items() if on[key] > MOST * length}
+
+
+def _ink(drawn: list[tuple[np.ndarray, np.ndarray]], size: tuple[int, int]) -> off_ink.Ink | None:
+    """The places that lines, with their widths, explain; `None` without lines."""
+    if not drawn:
+        return None
+    lines, widths = zip(*drawn, strict=True)
+    return off_ink.Ink(lines, np.concatenate(widths), size)

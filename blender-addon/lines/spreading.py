@@ -88,6 +88,8 @@ class Run:
     """Complex pixels: how far each point was moved."""
     was: np.ndarray
     """Complex pixels: where each point was."""
+    now: np.ndarray
+    """The share of each point on the edited stroke as it is now."""
 
 
 def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slots, chosen: np.ndarray | None = None) -> Edit:
@@ -155,10 +157,10 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
     made: list[tuple[int, st.Content]] = []
     left_out = 0
     if not shape:
-        made = _looked(edit, content, edit.edited) if looks else []
+        made = _looked(edit, content, edit.edited, gone) if looks else []
         gone[[place for place, _ in made]] = True
     elif edit.edited:
-        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]]) if looks else []
+        made = _looked(edit, content, [i for i in edit.edited if edit.rigid[i] and not edit.same[i]], gone) if looks else []
         gone[[place for place, _ in made]] = True
         pixels = to_complex(mapping, content.point["position"])
         touched = set().union(*(edit.numbers(i) for i in edit.reshaped()))
@@ -173,8 +175,8 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
                 made += new
         gone[[piece.index for pieces in there.values() for piece in pieces]] = True
         # Curves with handles or knots, and single points, get the look.
-        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]]) if looks else []
-        made += [each for each in rest if not gone[each[0]]]
+        rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]], gone) if looks else []
+        made += rest
         gone[[place for place, _ in rest]] = True
     return _assembled(content, gone, made, edit.slots), left_out
 
@@ -205,10 +207,18 @@ def _pieces(content: st.Content, pixels: np.ndarray, number: int) -> list[_Piece
     places = np.flatnonzero((content.strokes(gp.TRACK) == number) & (content.sizes > 1) & (content.types == st.POLY))
     found = []
     for index in places.tolist():
-        points, along = np.arange(*content.starts[index : index + 2]), content.point.get(gp.ALONG)
-        for part, shares in _stretches(content.point["position"][points], None if along is None else along[points].astype(np.float64)):
+        points = np.arange(*content.starts[index : index + 2])
+        for part, shares in _stretches(content.point["position"][points], _along(content, points)):
             found.append(_Piece(index, points[part], shares, pixels[points[part]], bool(content.strokes("cyclic")[index])))
     return sorted(found, key=lambda piece: piece.shares[0])
+
+
+def _along(content: st.Content, points: np.ndarray) -> np.ndarray | None:
+    """The shares of a stroke's points; `None` if some were drawn or joined to it since, and so have none on it."""
+    along, lines = content.point.get(gp.ALONG), content.point.get(gp.LINE)
+    if along is None or lines is None or not lines[points].all() or np.ptp(lines[points]):
+        return None
+    return along[points].astype(np.float64)
 
 
 def _stretches(points: np.ndarray, along: np.ndarray | None) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -229,7 +239,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
     a, b = edit.content.starts[i : i + 2]
     lines = edit.content.point[gp.LINE][a:b].copy()
     along = edit.content.point[gp.ALONG][a:b].astype(np.float64)
-    old, new = before[a:b].copy(), now[a:b]
+    old, new, after = before[a:b].copy(), now[a:b], dr.shares(edit.content.point["position"][a:b])
     known = np.flatnonzero(lines)
     for k in np.flatnonzero(lines == 0):
         near = known[np.argmin(np.abs(known - k))]
@@ -240,7 +250,7 @@ def runs(edit: Edit, i: int, before: np.ndarray, now: np.ndarray) -> list[Run]:
         if k < len(lines) and lines[k] == lines[k - 1] and not _turns(along, lines, start, k):
             continue
         span = slice(start, k)
-        found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span]))
+        found.append(Run(int(lines[start]), along[span], (new - old)[span], old[span], after[span]))
         start = k
     return found
 
@@ -277,20 +287,31 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[
             continue
         points = mapping.to_layer(np.stack([line.points.real, line.points.imag], 1)).astype(np.float32)
         made = _like(content, line.piece, line.where, points)
-        made.set_strokes("cyclic", np.array([closed and len(lines) == 1 and line.begins and line.ends]))
+        made.set_strokes("cyclic", np.array([closed and _is_closed(line, lines)]))
         made.set_strokes(gp.TRACK, np.array([number], np.int32))
+        dr.mark_places(made)
+        if not line.is_whole():
+            # The next edit goes on where this one is.
+            made.point[gp.ALONG] = line.now.astype(np.float32)
         if looks:
-            _look_like(made, edit.content, _sources(edit.content, [i])[0])
+            _look_like(made, edit.content, _sources(edit.content, [i])[0], _changed(content, line.piece.index))
         found.append((line.piece.index, made))
     return found
 
 
-def _looked(edit: Edit, content: st.Content, which: Sequence[int]) -> list[tuple[int, st.Content]]:
-    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices."""
+def _is_closed(line: _Line, lines: list[_Line]) -> bool:
+    """Whether a line of a closed stroke is closed on another frame: it is there already, or it is whole."""
+    if line.piece.closed:
+        return sum(other.piece.index == line.piece.index for other in lines) == 1
+    return len(lines) == 1 and line.begins and line.ends
+
+
+def _looked(edit: Edit, content: st.Content, which: Sequence[int], gone: np.ndarray) -> list[tuple[int, st.Content]]:
+    """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices. Those that are `gone` get none."""
     tracks, made = content.strokes(gp.TRACK), {}
     for source in _sources(edit.content, which):
-        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0)):
-            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source)
+        for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0) & ~gone):
+            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source, _changed(content, place))
     return sorted(made.items(), key=lambda each: each[0])
 
 
@@ -302,6 +323,8 @@ class _Line:
     """Complex pixels."""
     where: np.ndarray
     """The share of each point on its stroke there."""
+    now: np.ndarray
+    """The share of each point on the edited stroke as it is now."""
     piece: _Piece
     """What gives the attributes."""
     begins: bool
@@ -310,34 +333,42 @@ class _Line:
 
     def with_next(self, other: _Line) -> _Line:
         """Both in one."""
-        points, where = np.concatenate([self.points, other.points]), np.concatenate([self.where, other.where])
-        return _Line(points, where, self.piece, self.begins, other.ends)
+        rows = (np.concatenate([getattr(self, name), getattr(other, name)]) for name in ("points", "where", "now"))
+        return _Line(*rows, self.piece, self.begins, other.ends)
+
+    def turned(self) -> _Line:
+        """In the other direction."""
+        return _Line(self.points[::-1], self.where[::-1], self.now[::-1], self.piece, self.ends, self.begins)
+
+    def is_whole(self) -> bool:
+        """Whether all of the edited stroke is there."""
+        return self.now[0] < WHOLE and self.now[-1] > 1 - WHOLE
 
 
 def _reshaped(edit: Edit, parts: list[Run], there: dict[int, list[_Piece]], before: np.ndarray, closed: bool) -> list[_Line]:
     """The lines of all runs on another frame: one, unless a stroke is cut there."""
     lines: list[_Line] = []
     for run in parts:
-        samples = np.linspace(0, 1, SAMPLES)
-        was = _original(edit, run.number, samples, before)
-        stretches = [_stretch(run, piece, was, samples) for piece in there[run.number]]
+        was = _original(edit, run.number, before)
+        stretches = [_stretch(run, piece, *was) for piece in there[run.number]]
         stretches = [each for each in stretches if each is not None]
         if run.shares[-1] < run.shares[0]:
-            stretches = [_Line(each.points[::-1], each.where[::-1], each.piece, each.ends, each.begins) for each in reversed(stretches)]
+            stretches = [each.turned() for each in reversed(stretches)]
         for k, each in enumerate(stretches):
             if lines and k == 0 and lines[-1].ends and each.begins:
                 lines[-1] = lines[-1].with_next(each)
             else:
                 lines.append(each)
-    if closed and len(lines) > 1 and lines[-1].ends and lines[0].begins and lines[-1].piece.index == lines[0].piece.index:
+    first = next((k for k, each in enumerate(lines[:-1]) if each.piece.index == lines[-1].piece.index), None) if closed else None
+    if first is not None and lines[-1].ends and lines[first].begins:
         # What lies on both sides of the seam of a closed stroke.
-        lines[0] = lines.pop().with_next(lines[0])
-        lines[0].begins = lines[0].ends = False
+        lines[first] = lines.pop().with_next(lines[first])
+        lines[first].begins = lines[first].ends = False
     return lines
 
 
-def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _Line | None:
-    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the `samples`."""
+def _stretch(run: Run, piece: _Piece, known: np.ndarray, was: np.ndarray) -> _Line | None:
+    """What of a run is on a piece, by share. `was` is the stroke of the edited frame at the shares that are `known`."""
     order = np.argsort(run.shares, kind="stable")
     shares, moved, here = run.shares[order], run.moved[order], piece.shares
     first, last = max(shares[0], here[0]), min(shares[-1], here[-1])
@@ -345,23 +376,24 @@ def _stretch(run: Run, piece: _Piece, was: np.ndarray, samples: np.ndarray) -> _
         return None
     if shares[0] == shares[-1]:
         # Points that were drawn since, all at one place of the stroke.
-        where, delta = run.shares, run.moved
+        where, delta, now = run.shares, run.moved, run.now
     else:
         where = np.concatenate([[first], here[(here > first) & (here < last)], [last]])
-        delta = _interpolated(where, shares, moved)
-    known = (samples >= here[0]) & (samples <= here[-1])
-    known = known if known.sum() > 1 else np.ones(len(samples), bool)
-    factor = similarity(was[known], _interpolated(samples[known], here, piece.pixels), samples[known], where, piece.closed)
+        delta, now = _interpolated(where, shares, moved), np.interp(where, shares, run.now[order])
+    # Only what is on both frames tells how the stroke turns and grows.
+    low, high = max(known[0], here[0]), min(known[-1], here[-1])
+    samples = np.linspace(*((low, high) if low < high else (0, 1)), SAMPLES)
+    factor = similarity(*(_interpolated(samples, *each) for each in ((known, was), (here, piece.pixels))), samples, where, piece.closed)
     points = _interpolated(where, here, piece.pixels) + factor * delta
-    return _Line(points, where, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
+    return _Line(points, where, now, piece, first - shares[0] < WHOLE, shares[-1] - last < WHOLE)
 
 
-def _original(edit: Edit, number: int, samples: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """A stroke of the edited frame as it was, at shares."""
+def _original(edit: Edit, number: int, before: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What there is of a stroke on the edited frame, as it was: shares and complex pixels."""
     mine = np.flatnonzero(edit.content.point[gp.LINE] == number)
     along = edit.content.point[gp.ALONG][mine].astype(np.float64)
     order = np.argsort(along, kind="stable")
-    return _interpolated(samples, along[order], before[mine][order])
+    return along[order], before[mine][order]
 
 
 def _interpolated(where: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -397,7 +429,7 @@ class _Source:
     """Indices of the points that give the rest, by their share."""
     shares: np.ndarray
     without: set[str]
-    """What is no look of the line: Remove Hidden Lines has changed it."""
+    """As `_changed`."""
 
 
 def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
@@ -407,20 +439,24 @@ def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
     for i in which:
         if i in done:
             continue
-        mine, without = np.array([i]), set()
-        if left[i] and undrawn[i]:
-            without = {"opacity"}
-        elif left[i]:
-            same = left & (tracks == tracks[i])
-            mine = np.flatnonzero(same & ~undrawn)
-            if (same & undrawn).any():
-                # The fill is with the outline alone.
-                without = {"fill_id" if gp.FILL_BY_ID else "material_index"}
+        mine = np.flatnonzero(left & (tracks == tracks[i]) & ~undrawn) if left[i] and not undrawn[i] else np.array([i])
         done |= set(mine.tolist())
         points, shares = st.ranges(content.starts[mine], content.sizes[mine]), np.concatenate([_shares(content, k) for k in mine])
         order = np.argsort(shares, kind="stable")
-        found.append(_Source(i, points[order], shares[order], without))
+        found.append(_Source(i, points[order], shares[order], _changed(content, i)))
     return found
+
+
+def _changed(content: st.Content, i: int) -> set[str]:
+    """What is no look of a stroke, since Remove Hidden Lines has changed it."""
+    left = left_by_rototoon(content)
+    if not left[i]:
+        return set()
+    undrawn, tracks = st.undrawn(content), content.strokes(gp.TRACK)
+    if undrawn[i]:
+        return {"opacity"}
+    # The fill is with the outline alone.
+    return {"fill_id" if gp.FILL_BY_ID else "material_index"} if (left & undrawn & (tracks == tracks[i])).any() else set()
 
 
 def _shares(content: st.Content, i: int) -> np.ndarray:
@@ -431,11 +467,11 @@ def _shares(content: st.Content, i: int) -> np.ndarray:
     return dr.shares(content.point["position"][span])
 
 
-def _look_like(made: st.Content, content: st.Content, source: _Source) -> None:
-    """Gives a stroke the look of strokes of another drawing, by the share of the length."""
+def _look_like(made: st.Content, content: st.Content, source: _Source, keeps: set[str]) -> None:
+    """Gives a stroke the look of strokes of another drawing, by the share of the length. What it `keeps` stays."""
     where, known = _shares(made, 0), source.shares
     for name in _looks_of(content):
-        if name in source.without:
+        if name in source.without | keeps:
             continue
         if name in content.curve:
             _have(made, content, name)
@@ -474,5 +510,5 @@ def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.C
         return whole
     result = st.chosen(whole, np.array([k for *_, k in sorted(places)]))
     new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
-    dr.mark(result, slots, new)
+    dr.mark_looks(result, slots, new)
     return result

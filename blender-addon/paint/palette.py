@@ -26,5 +26,5 @@ def take(ob, looks: Mapping[str, Sequence[float]]) -> None:
 
 def fields(ob) -> dict[str, list[float]]:
     """The colours in the form of a document."""
-    known = [own.material for own in ob.rototoon.palette if fill_materials.is_colour(own.material)]
-    return {material.name: fill_materials.look(material).clip(0, 1).round(6).tolist() for material in known}
+    colours = [own.material for own in ob.rototoon.palette if fill_materials.is_colour(own.material)]
+    return {material.name: fill_materials.look(material).clip(0, 1).round(6).tolist() for material in colours}

@@ -411,8 +411,10 @@ def write(ob, cuts: list[Cut], move: bool, in_place: bool, after: int | None = N
             _put(layer, number, each.source, each.seen)
             changed += 1
             parts += each.pieces
-        if aside is not None and kept:
-            aside.put(after, group[-1].source, st.chosen(group[-1].hidden, []))
+        # What is hidden of a drawing ends with it.
+        end = after if kept else min((number for number in gp.frame_numbers(layer) if number > group[-1].frame), default=None)
+        if aside is not None and end is not None:
+            aside.put(end, group[-1].source if kept else end, st.chosen(group[-1].hidden, []))
     return changed, parts
 
 

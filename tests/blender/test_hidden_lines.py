@@ -71,6 +71,23 @@ def test_frames_after_the_range_show_what_they_showed(addon, action):
     assert list(ends(addon, ob)) == [1, 20]
 
 
+@pytest.mark.parametrize("frames, drawn", [("CURRENT", 5), ("RANGE", 15)])
+def test_what_is_moved_aside_ends_with_its_drawing(addon, frames, drawn):
+    ob = behind(addon, ("Lines", "Front", "Front 2"))
+    cover(addon, ob, "Front", 1, (0, 0))
+    add(addon, ob, "Lines", drawn, [level(-2, 2)])
+    bpy.ops.rototoon.hidden_lines(frames=frames, action="MOVE")
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)], drawn: [(-2, 2)]}
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], drawn: []}
+    bpy.context.scene.frame_set(drawn)
+    bpy.ops.rototoon.hidden_lines(action="MOVE")
+    assert ends(addon, ob, "Lines Hidden") == {1: [(-1, 1)], drawn: [(-1, 1)]}
+    bpy.context.scene.frame_set(1)
+    cover(addon, ob, "Front 2", 1, (2.5, 0), 0.2)
+    bpy.ops.rototoon.hidden_lines(action="MOVE")
+    assert ends(addon, ob, "Lines Hidden")[drawn] == [(-1, 1)]
+
+
 def test_nothing_is_added_after_the_range_where_nothing_changes_there(addon):
     ob = behind(addon)
     cover(addon, ob, "Front", 1, (0, 0))
@@ -132,6 +149,32 @@ def test_lines_behind_a_fill_that_does_not_hide_them_stay(addon, change, named):
     bpy.ops.rototoon.hidden_lines()
     assert ends(addon, ob) == {1: [(-3, 3)]}
     assert ('"Front": the fills are transparent, masked or blended' in messages(addon)) == named
+
+
+@pytest.mark.parametrize("hides", [False, True])
+def test_the_fill_is_that_of_the_material_that_the_object_shows(addon, hides):
+    ob, gp = behind(addon), addon("blender.grease_pencil")
+    handle = cover(addon, ob, "Front", 1, (0, 0))
+    place = int(gp.value(handle, "material_index", 1)[0])
+    slot, seen = ob.material_slots[place], ob.data.materials[place].copy()
+    seen.grease_pencil.fill_color[3], ob.data.materials[place].grease_pencil.fill_color[3] = float(hides), float(not hides)
+    slot.link, slot.material = "OBJECT", seen
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)] if hides else [(-3, 3)]}
+
+
+@pytest.mark.parametrize("slot", ["none", "empty", "mesh"])
+def test_a_fill_without_a_material_hides_lines(addon, slot):
+    ob = behind(addon)
+    if not addon("blender.grease_pencil").FILL_BY_ID:
+        pytest.skip("materials fill")
+    cover(addon, ob, "Front", 1, (0, 0))
+    if slot == "none":
+        ob.data.materials.clear()
+    else:
+        ob.data.materials[0] = bpy.data.materials.new("Mesh") if slot == "mesh" else None
+    bpy.ops.rototoon.hidden_lines()
+    assert ends(addon, ob) == {1: [(-3, -1), (1, 3)]}
 
 
 def test_a_mask_that_is_switched_off_changes_nothing(addon):

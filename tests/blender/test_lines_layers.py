@@ -1,5 +1,7 @@
 """Carry Strokes on several layers whose drawings are on different frames, and Trace Image. With the real library."""
 
+import weakref
+
 import bpy
 import line_shots as ls
 import numpy as np
@@ -38,6 +40,23 @@ def test_new_lines_are_on_one_layer_and_on_no_line_that_has_a_stroke(addon, film
     assert counts(addon, film, "B") == {**dict.fromkeys(range(1, 7), 5), frame: 1}
     (body,) = ls.strokes(addon, film, "A", 4).values()
     assert all(away(body, points) > 5 for points in ls.strokes(addon, film, "B", 4).values())
+
+
+def test_the_places_of_a_single_frame_are_held_at_a_time(addon, film, monkeypatch):
+    """Those of a long film in full resolution would be gigabytes."""
+    off_ink, alive, most = addon("lines.off_ink"), weakref.WeakSet(), []
+
+    class Ink(off_ink.Ink):
+        def __init__(self, *given):
+            super().__init__(*given)
+            alive.add(self)
+            most.append(len(alive))
+
+    monkeypatch.setattr(off_ink, "Ink", Ink)
+    for name, frame in (("A", 1), ("B", 2)):
+        ls.put(addon, film, name, frame, [(ls.lines(frame - 1)[0][0], True)])
+    bpy.ops.rototoon.carry_strokes(layers="ALL", new_lines=True)
+    assert len(most) >= 6 and max(most) <= 2
 
 
 def test_what_was_moved_to_another_layer_is_not_drawn_anew_on_its_first_one(addon, traced):

@@ -63,3 +63,14 @@ def test_a_new_object_has_ink_though_a_mesh_material_has_its_name(addon):
     bpy.data.materials.new("Rototoon Ink")
     ob = addon("blender.grease_pencil").new_object("Drawing", bpy.context.collection)
     assert ob.data.materials[0].grease_pencil is not None
+
+
+def test_a_colour_of_a_palette_is_the_material_that_the_object_shows(addon, inked):
+    palette, night = addon("paint.palette"), {"Night": [0.0, 0.1, 0.2]}
+    palette.take(inked, night)
+    made = inked.data.materials.pop(index=1)
+    slot = inked.material_slots[0]
+    slot.link, slot.material = "OBJECT", made
+    inked.rototoon.palette.clear()
+    palette.take(inked, night)
+    assert [own.material for own in inked.rototoon.palette] == [made]

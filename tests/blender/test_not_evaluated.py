@@ -82,6 +82,13 @@ def test_lines_of_a_drawing_are_as_wide_as_they_are(addon, tmp_path):
     assert radius_of(again(ob, tmp_path)) == pytest.approx(seen)
 
 
+def test_radii_are_those_of_its_scale(addon, tmp_path):
+    ob, shower, stand = keyed(addon, tmp_path)
+    ob.scale = (2, 2, 2)
+    untick(ob, shower, stand)
+    assert addon("blender.camera").radius_of(again(ob, tmp_path)) == pytest.approx(2)
+
+
 def test_an_object_in_another_scene_than_its_camera(addon, tmp_path):
     ob, _, _ = keyed(addon, tmp_path)
     second = bpy.data.scenes.new("Second")

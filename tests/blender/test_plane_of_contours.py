@@ -117,3 +117,12 @@ def test_lines_and_paint_lie_on_the_plane_of_contours_on_a_moved_layer(addon, be
         drawn = np.concatenate([gp.positions(h, int(gp.offsets(h)[-1])) for h, _ in gp.drawings(before.data.layers[name]).values()])
         drawn = drawn @ to_world[:3, :3].T + to_world[:3, 3]
         assert (drawn - centre) @ normal == pytest.approx(0, abs=1e-4)
+
+
+@pytest.mark.usefixtures("library")
+def test_lines_lie_on_the_plane_of_a_layer_that_was_moved(addon, before):
+    layer = before.data.layers["Contours"]
+    layer.translation = (0, 0.5, 0)
+    bpy.context.view_layer.update()
+    bpy.ops.rototoon.trace_drawing(frames="CURRENT")
+    assert depths(addon, before, "Lines") == pytest.approx(DEPTH + 0.5, abs=1e-5)

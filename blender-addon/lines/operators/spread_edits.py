@@ -140,7 +140,9 @@ def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:
     for i, number in numbers.items():
         tracks[i], chosen[i] = number, True
     content.set_strokes(gp.TRACK, tracks)
-    dr.mark(content, edit.slots, chosen)
+    # The points of what only gives its look are where they were on their stroke.
+    dr.mark_places(content, chosen, ~edit.rigid)
+    dr.mark_looks(content, edit.slots, chosen)
     return content
 
 
