@@ -50,7 +50,8 @@ pub struct TraceOptions {
 ///
 /// If an earlier run traced the first frame for itself, and the first drawing is a later one, the first frame stays as it was, and the frames between
 /// are bound to it and to the drawing. So an edit of one traced drawing costs the lines before it nothing. An earlier run is known by its
-/// strokes in the field `traced`, which are all sure there, or by the [options](TraceOptions::keep_first).
+/// strokes in the field `traced`, which are all sure there, or by the [options](TraceOptions::keep_first). A first frame that the artist emptied is
+/// not kept.
 ///
 /// Frames that hold a drawing have its strokes to the last digit, unless the artist drew there. A drawing without strokes is one, too: the frame
 /// stays empty, and so do those that hold it.
@@ -87,11 +88,12 @@ pub fn trace(
     let noted = Noted::new(&sequence);
     let holds = Holds::of(&noted, footage.first, &looked_at(&beside, &range), kept.cache, &search)?;
     let all = looks(&drawn, &beside, &range, &holds);
+    let keep_first = options.keep_first || is_own(&earlier, *range.start());
     let mut tracing = Tracing {
         frames: &holds,
         drawn,
         options: &options.lines,
-        keep_first: options.keep_first || is_own(&earlier, *range.start()),
+        keep_first: keep_first && !own::is_emptied(&all_drawn, *range.start()),
         kept,
         earlier: Earlier::default(),
         progress,

@@ -310,3 +310,20 @@ fn drawings_that_are_there_are_not_traced_over() {
     let drawings = read(&out)["drawings"].clone();
     assert_eq!((&drawings[0], &drawings[2]["strokes"]), (&own(0), &json!([])));
 }
+
+#[test]
+fn a_film_whose_first_frame_was_emptied_is_traced_alike_again() {
+    let (folder, path) = project(json!({}));
+    let [first, second, third] = ["1.json", "2.json", "3.json"].map(|name| folder.path().join(name));
+    let run = |from: &Path, to: &Path| assert!(trace(from, to, &["--cache", "none"]).status.success());
+    run(&path, &first);
+    let mut document = read(&first);
+    let drawn = |stroke: &Value| json!({"points": stroke["points"], "closed": stroke["closed"]});
+    let strokes: Vec<Value> = document["traced"][2]["strokes"].as_array().unwrap().iter().map(drawn).collect();
+    document["drawings"] = json!([{"frame": 0, "strokes": []}, {"frame": 2, "strokes": strokes}]);
+    fs::write(&first, document.to_string()).unwrap();
+    run(&first, &second);
+    run(&second, &third);
+    assert_eq!(read(&second)["traced"][0]["strokes"], json!([]));
+    assert_eq!(read(&second), read(&third));
+}

@@ -21,6 +21,12 @@ pub(super) fn emptied(found: &mut [TracedDrawing], drawn: &[Drawn], holds: &Hold
     }
 }
 
+/// Whether the artist emptied a frame. As the first one it is then not kept from an earlier run: the next run would not find it in this one's result, and
+/// would give other lines.
+pub(super) fn is_emptied(drawn: &[Drawn], frame: FrameNumber) -> bool {
+    drawn.iter().any(|drawing| drawing.frame == frame && drawing.strokes.is_empty())
+}
+
 /// Gives strokes of the artist the numbers that an `earlier` run had for the same strokes on the same frame. Numbers from `new` on are those
 /// of this run. They alone change, and only to earlier ones that nothing else has in `found`.
 pub(super) fn numbered(found: &mut [TracedDrawing], drawn: &[Drawn], earlier: &[TracedDrawing], new: usize) {
