@@ -24,6 +24,7 @@ from ..blender import grease_pencil as gp
 from ..blender import marks
 from ..blender import strokes as st
 from . import drawings as dr
+from . import spread_looks
 
 SIGMA = 0.2
 """Width of the Gaussian in shares of the length."""
@@ -31,13 +32,6 @@ SAMPLES = 33
 """Samples of a stroke for the similarity."""
 WHOLE = 1e-3
 """A stretch that lacks less than this share of the length is whole."""
-
-
-_FORM = {
-    "position", "cyclic", "handle_left", "handle_right", "handle_type_left", "handle_type_right", "nurbs_order", "nurbs_weight", "knots_mode",
-    "resolution",
-}  # fmt: skip
-"""Attributes that are the form of a stroke and no look."""
 
 
 @dataclass
@@ -123,18 +117,13 @@ def _numbers(content: st.Content, i: int) -> set[int]:
 
 def _rigid(content: st.Content) -> np.ndarray:
     """For each stroke: whether it is a curve or what Remove Hidden Lines has left, or comes from a number of which another stroke is one."""
-    rigid = (content.types != st.POLY) | left_by_rototoon(content)
+    rigid = (content.types != st.POLY) | spread_looks.left_by_rototoon(content)
     owns = [_numbers(content, i) for i in range(len(rigid))]
     numbers: set[int] = set()
     while not (whole := set().union(*(owns[i] for i in np.flatnonzero(rigid)))) <= numbers:
         numbers = whole
         rigid = rigid | np.array([bool(own & numbers) for own in owns])
     return rigid
-
-
-def left_by_rototoon(content: st.Content) -> np.ndarray:
-    """For each stroke: whether Remove Hidden Lines has left it of a stroke, as a piece or as the outline of a fill."""
-    return content.strokes(gp.INTERVAL).any(1)
 
 
 def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
@@ -294,7 +283,7 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[
             # The next edit goes on where this one is.
             made.point[gp.ALONG] = line.now.astype(np.float32)
         if looks:
-            _look_like(made, edit.content, _sources(edit.content, [i])[0], _changed(content, line.piece.index))
+            spread_looks.look_like(made, edit.content, spread_looks.sources(edit.content, [i])[0], spread_looks.changed(content, line.piece.index))
         found.append((line.piece.index, made))
     return found
 
@@ -309,9 +298,9 @@ def _is_closed(line: _Line, lines: list[_Line]) -> bool:
 def _looked(edit: Edit, content: st.Content, which: Sequence[int], gone: np.ndarray) -> list[tuple[int, st.Content]]:
     """The strokes of a drawing that get the look of the edited strokes `which` only, with their indices. Those that are `gone` get none."""
     tracks, made = content.strokes(gp.TRACK), {}
-    for source in _sources(edit.content, which):
+    for source in spread_looks.sources(edit.content, which):
         for place in np.flatnonzero(np.isin(tracks, sorted(edit.numbers(source.stroke))) & (content.sizes > 0) & ~gone):
-            _look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source, _changed(content, place))
+            spread_looks.look_like(made.setdefault(int(place), st.chosen(content, [place])), edit.content, source, spread_looks.changed(content, place))
     return sorted(made.items(), key=lambda each: each[0])
 
 
@@ -417,85 +406,6 @@ def _like(content: st.Content, base: _Piece, where: np.ndarray, points: np.ndarr
     for name, values in content.curve.items():
         made.curve[name] = values[base.index : base.index + 1].copy()
     return made
-
-
-@dataclass
-class _Source:
-    """Where a look comes from."""
-
-    stroke: int
-    """The stroke that gives what holds for a whole stroke."""
-    points: np.ndarray
-    """Indices of the points that give the rest, by their share."""
-    shares: np.ndarray
-    without: set[str]
-    """As `_changed`."""
-
-
-def _sources(content: st.Content, which: Sequence[int]) -> list[_Source]:
-    """The sources of the looks of strokes. The pieces that Remove Hidden Lines has left of one stroke are one source."""
-    left, undrawn, tracks = left_by_rototoon(content), st.undrawn(content), content.strokes(gp.TRACK)
-    found, done = [], set()
-    for i in which:
-        if i in done:
-            continue
-        mine = np.flatnonzero(left & (tracks == tracks[i]) & ~undrawn) if left[i] and not undrawn[i] else np.array([i])
-        done |= set(mine.tolist())
-        points, shares = st.ranges(content.starts[mine], content.sizes[mine]), np.concatenate([_shares(content, k) for k in mine])
-        order = np.argsort(shares, kind="stable")
-        found.append(_Source(i, points[order], shares[order], _changed(content, i)))
-    return found
-
-
-def _changed(content: st.Content, i: int) -> set[str]:
-    """What is no look of a stroke, since Remove Hidden Lines has changed it."""
-    left = left_by_rototoon(content)
-    if not left[i]:
-        return set()
-    undrawn, tracks = st.undrawn(content), content.strokes(gp.TRACK)
-    if undrawn[i]:
-        return {"opacity"}
-    # The fill is with the outline alone.
-    return {"fill_id" if gp.FILL_BY_ID else "material_index"} if (left & undrawn & (tracks == tracks[i])).any() else set()
-
-
-def _shares(content: st.Content, i: int) -> np.ndarray:
-    """The shares of a stroke's points; of a piece that Remove Hidden Lines has left, on the whole stroke."""
-    span = slice(*content.starts[i : i + 2])
-    if gp.ALONG in content.point and left_by_rototoon(content)[i]:
-        return content.point[gp.ALONG][span].astype(np.float64)
-    return dr.shares(content.point["position"][span])
-
-
-def _look_like(made: st.Content, content: st.Content, source: _Source, keeps: set[str]) -> None:
-    """Gives a stroke the look of strokes of another drawing, by the share of the length. What it `keeps` stays."""
-    where, known = _shares(made, 0), source.shares
-    for name in _looks_of(content):
-        if name in source.without | keeps:
-            continue
-        if name in content.curve:
-            _have(made, content, name)
-            made.curve[name] = content.curve[name][source.stroke : source.stroke + 1].copy()
-        elif name in content.point:
-            own = content.point[name][source.points]
-            _have(made, content, name)
-            if own.dtype.kind != "f":
-                made.point[name] = own[np.abs(where[:, None] - known[None]).argmin(1)]
-                continue
-            columns = own.reshape(len(own), -1).astype(np.float64)
-            values = np.stack([np.interp(where, known, columns[:, k]) for k in range(columns.shape[1])], 1)
-            made.point[name] = values.reshape((len(where), *own.shape[1:])).astype(own.dtype)
-
-
-def _looks_of(content: st.Content) -> list[str]:
-    """The attributes that are looks of strokes, the artist's own too."""
-    return sorted(name for name in {*content.point, *content.curve} - _FORM if not name.startswith("rototoon_"))
-
-
-def _have(made: st.Content, source: st.Content, name: str) -> None:
-    """Gives a stroke the data type of an attribute that it does not have yet."""
-    if name not in made.kinds:
-        made.kinds[name] = source.kinds[name] if name in source.kinds else gp.TYPES[name][0]
 
 
 def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]], slots: marks.Slots) -> st.Content:

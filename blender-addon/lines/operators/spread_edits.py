@@ -11,7 +11,7 @@ from ...common import jobs
 from ...common.operators import Long
 from ...common.wording import counted
 from .. import drawings as dr
-from .. import moved, records, spreading
+from .. import moved, records, spread_looks, spreading
 from .match_lines import nothing_traced, numbered
 from .tracing_base import OnFootage
 
@@ -122,7 +122,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         """Which moved strokes are not reshaped on other frames; empty if all are."""
         curves, pieces = self._left_out, 0
         for _, _, edit, *_ in self._work_on if self.shape else ():
-            left = int(spreading.left_by_rototoon(edit.content)[edit.not_reshaped()].sum())
+            left = int(spread_looks.left_by_rototoon(edit.content)[edit.not_reshaped()].sum())
             curves, pieces = curves + len(edit.not_reshaped()) - left, pieces + left
         said = []
         if curves:
