@@ -81,7 +81,13 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         Ok((document, earlier.map_err(|error| Failure::of(error, from))?))
     })?;
     project::say_gaps(&document, from)?;
-    let traced = document.traced().map_err(|error| Failure::Other(error.to_string()))?;
+    let failed = |error: rototoon::project::FieldError| Failure::Other(error.to_string());
+    let mut traced = document.traced().map_err(failed)?;
+    // That the artist emptied a frame is no matter of faint ink.
+    let emptied =
+        document.drawings().map_err(failed)?.drawings.into_iter().filter(|drawing| drawing.strokes.is_empty());
+    let emptied: BTreeSet<FrameNumber> = emptied.map(|drawing| drawing.frame).collect();
+    traced.retain(|drawing| !emptied.contains(&drawing.frame));
     if earlier.known > 0 {
         line("note", &format!("{earlier} steps have the strokes and the pictures of an earlier run"));
     }
