@@ -145,6 +145,10 @@ class Reporting:
         except (Problem, RototoonError) as problem:
             self._say("ERROR", str(problem))
             return {"CANCELLED"}
+        except ReferenceError:
+            # Blender's words for data that was removed are not for artists.
+            self._say("ERROR", "What this works on was deleted meanwhile")
+            return {"CANCELLED"}
 
     def done(self, message: str | None) -> set[str]:
         """Reports the message and the warnings, if there are any."""

@@ -34,6 +34,15 @@ def test_fit_strokes_leaves_what_was_drawn_meanwhile(addon, meanwhile):
     assert sizes(addon, ob, 1) == [200, 64]
 
 
+@pytest.mark.every_version
+def test_an_object_that_is_deleted_meanwhile_is_told_of(addon, meanwhile):
+    ob = drawing_object(addon)
+    add(addon, ob, "Lines", 1, [wave(200)])
+    meanwhile("strokes.operators.fit_strokes", "ROTOTOON_OT_fit_strokes", lambda: bpy.data.objects.remove(ob))
+    with pytest.raises(RuntimeError, match="What this works on was deleted meanwhile"):
+        bpy.ops.rototoon.fit_strokes(unit="WORLD", tolerance=0.01, frames="ALL")
+
+
 @pytest.mark.parametrize("drawn", ["on it", "on a new frame"])
 def test_hidden_lines_leave_what_was_drawn_meanwhile(addon, meanwhile, drawn):
     ob = drawing_object(addon, ("Lines", "Cover"))
