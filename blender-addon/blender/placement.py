@@ -158,6 +158,14 @@ def is_animated(ob: bpy.types.Object | None, carries: bool = False) -> bool:
     return False
 
 
+def may_part(ob: bpy.types.Object, layer, other) -> bool:
+    """Whether a layer can move against another one, which may be `None`: a new one."""
+    there = [each for each in (layer, other) if each is not None]
+    carriers = {(each.parent, each.parent_bone) for each in there} | ({(None, "")} if other is None else set())
+    carried = len(carriers) > 1 and (is_animated(ob) or any(is_animated(each.parent, carries=True) for each in there))
+    return carried or any(hierarchy.is_animated(ob, each.name) for each in there)
+
+
 def _moves_children(ob: bpy.types.Object, by_points: bool) -> bool:
     """Whether what an object carries can move though the object stays: with its bones, along it, or with its points."""
     if ob.type == "ARMATURE":

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..blender import camera as cameras
 from ..blender import grease_pencil as gp
-from ..blender import hierarchy, placement
+from ..blender import placement
 
 ENOUGH = 20_000
 """Number of points that show a plane."""
@@ -30,7 +30,7 @@ def points(ob, name: str) -> np.ndarray:
     for contours in gp.layers(ob, ob.rototoon.contours_layer):
         drawn = _gathered(handle for handle, kind in gp.drawings(contours).values() if kind != gp.GENERATED)
         if len(drawn):
-            return _from(ob, contours, layer, drawn) if _is_flat(drawn) and not _moves(ob, contours, layer) else drawn[:0]
+            return _from(ob, contours, layer, drawn) if _is_flat(drawn) and not placement.may_part(ob, contours, layer) else drawn[:0]
     return own
 
 
@@ -41,14 +41,6 @@ def _from(ob, contours, layer, drawn: np.ndarray) -> np.ndarray:
         return drawn
     matrix = np.linalg.inv(ways[1]) @ ways[0]
     return drawn @ matrix[:3, :3].T + matrix[:3, 3]
-
-
-def _moves(ob, contours, layer) -> bool:
-    """Whether a layer of contours can move against another layer, which may be `None`: a new one."""
-    there = [each for each in (contours, layer) if each is not None]
-    carriers = {(each.parent, each.parent_bone) for each in there} | ({(None, "")} if layer is None else set())
-    carried = len(carriers) > 1 and (placement.is_animated(ob) or any(placement.is_animated(each.parent, carries=True) for each in there))
-    return carried or any(hierarchy.is_animated(ob, each.name) for each in there)
 
 
 def _gathered(handles: Iterable) -> np.ndarray:

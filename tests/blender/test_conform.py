@@ -188,7 +188,7 @@ def test_other_numbers_change_no_bit(addon, film, tmp_path):
     bpy.ops.rototoon.conform(filepath=str(folder / "n_505.png"), compare=False, frame_offset=500)
     assert (film.rototoon.first, film.rototoon.frame_offset) == (501, -500)
     assert shots.snapshot(film)[0] == state
-    with pytest.raises(RuntimeError, match="No picture of the new footage stands for one of the old footage"):
+    with pytest.raises(RuntimeError, match="frame offset 5000: none of the old frames, 501 to 509, is among the new ones"):
         bpy.ops.rototoon.conform(filepath=str(folder / "n_505.png"), compare=False, frame_offset=5000)
 
 

@@ -137,9 +137,11 @@ fn probed(job: &RenderJob, footage: &Footage) -> BTreeSet<PathBuf> {
     let Ok(pattern) = FramePattern::parse(&job.output) else { return [output.to_owned()].into() };
     let file = output.file_name().unwrap_or_default();
     let asked = job.frames.clone().unwrap_or(footage.first..=footage.last);
-    // Of frames that the footage does not have there may be very many; rendering refuses them.
-    let frames = (*asked.start()).max(footage.first)..=(*asked.end()).min(footage.last);
-    frames.map(|frame| pattern.path(frame.saturating_add(job.offset)).with_file_name(file)).collect()
+    // Of frames that the footage does not have there may be very many; rendering refuses them before it writes.
+    if *asked.start() < footage.first || *asked.end() > footage.last {
+        return BTreeSet::new();
+    }
+    asked.map(|frame| pattern.path(frame.saturating_add(job.offset)).with_file_name(file)).collect()
 }
 
 /// Reads frames in the form `A-B` or `A`. Both may be negative.
