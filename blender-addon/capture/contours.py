@@ -17,11 +17,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from rototoon.documents import by_frame
 
 from ..blender import grease_pencil as gp
 from ..blender import guard, own_attributes
 from ..blender.errors import Changed
-from ..common import jobs
+from ..common import jobs, kept
 from . import correspondence, generated
 
 SLICE = 0.03
@@ -124,6 +125,12 @@ class Part:
     layer: int = 0
     keys: dict[int, Stroke] = field(default_factory=dict)
     made: dict[int, Stroke] = field(default_factory=dict)
+    depths: dict[int, float] = field(default_factory=dict)
+    """By scene frame the depths that differ from `depth`, of a document that reshaping made."""
+
+    def depth_at(self, frame: int) -> float:
+        """The depth on a scene frame."""
+        return self.depths.get(frame, self.depth)
 
 
 @dataclass
@@ -170,7 +177,7 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
     """
     settings = ob.rototoon
     layers = gp.layers(ob, settings.contours_layer)
-    parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra) for p in settings.parts]
+    parts = [Part(p.number, p.name, p.closed, p.depth, p.count, p.extra, depths=_depths(p.extra, settings.frame_offset)) for p in settings.parts]
     closed = frozenset(index for index, layer in enumerate(layers) if guard.closed(layer, hidden=True))
     found = Contours({}, parts, [], [layer.name for layer in layers], closed, settings.stamp)
     yield from _reading_drawings(ob, found, more)
@@ -184,6 +191,13 @@ def reading(ob, more: tuple[str, ...] = ()) -> Iterator[float]:
     _keep_beyond(found)
     _take_confidence(found)
     return found
+
+
+def _depths(extra: str, offset: int) -> dict[int, float]:
+    """A part's depths of single frames, by scene frame. Files may be damaged: what is no depth on a frame is left out."""
+    given = kept.fields(kept.fields(extra).get("depths"))
+    known = {frame: depth for frame, depth in given.items() if frame.removeprefix("-").isdecimal() and type(depth) in (int, float)}
+    return {frame + offset: float(depth) for frame, depth in by_frame(known).items()}
 
 
 def _reading_drawings(ob, found: Contours, more: tuple[str, ...]) -> Iterator[float]:

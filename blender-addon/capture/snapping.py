@@ -120,7 +120,7 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
     layer = gp.layer(ob, ob.rototoon.snapped_layer)
     old = made_frames(layer)
     own = set(gp.frame_numbers(layer)) - old
-    parts = sorted((part for part in found.parts if part.keys), key=lambda part: part.depth)
+    parts = [part for part in found.parts if part.keys]
     kinds = found.own()
     style = {part.number: writing.styles(part, found, kinds) for part in parts}
     frames = sorted({frame for _, frame in curves} - own)
@@ -133,7 +133,7 @@ def write(ob, curves: dict[tuple[int, int], list[np.ndarray]], found: Contours, 
     for frame in frames:
         strokes = [
             _stroke(part, frame, curves[part.number, frame], style[part.number], snapped)
-            for part in parts
+            for part in sorted(parts, key=lambda part: part.depth_at(frame))
             if curves.get((part.number, frame))
         ]
         rows = _rows(strokes, kinds)

@@ -162,6 +162,9 @@ def laying_out(
         _fill_part(block, index, part, tracks[part.number], mapper, fixed.get(part.number, Corrections()))
         _fill_style(block, index, part, found)
         yield 0.0
+    if any(part.depths for part in parts):
+        depths = [[part.depth_at(int(frame)) for part in parts] for frame in frames]
+        block.order = np.argsort(np.array(depths).reshape(len(frames), len(parts)), axis=1, kind="stable")
     return block
 
 

@@ -82,9 +82,10 @@ def _write_keys(ob, project: dict[str, Any], looks: Looks, planes: dict[str, np.
     settings, stamp = ob.rototoon, stamps.settled(ob)
     drawn: dict[str, dict[int, list[tuple[float, int, dict[str, Any], np.ndarray]]]] = {}
     for number, entry in enumerate(project.get("parts", []), 1):
-        frames = drawn.setdefault(looks.layer_of(entry["name"], settings.contours_layer), {})
+        frames, depths = drawn.setdefault(looks.layer_of(entry["name"], settings.contours_layer), {}), by_frame(entry.get("depths"))
         for picture, points in by_frame(entry.get("keys")).items():
-            frames.setdefault(picture, []).append((float(entry.get("depth", 0.0)), number, entry, np.asarray(points, np.float64)))
+            depth = float(depths.get(picture, entry.get("depth", 0.0)))
+            frames.setdefault(picture, []).append((depth, number, entry, np.asarray(points, np.float64)))
     for name, frames in drawn.items():
         layer, offset = gp.find_layer(ob, name), settings.frame_offset
         plane = {0: planes[name]} if name in planes else {}
