@@ -59,6 +59,11 @@ class Edit:
     def __bool__(self) -> bool:
         return bool(self.edited or self.deleted)
 
+    def keep(self, shape: bool, looks: bool) -> None:
+        """Leaves the strokes of which the shape or the look is wanted: what is not done on other frames stays an edit."""
+        reshaped = self.moved | (self.cut & ~self.rigid)
+        self.edited = [i for i in self.edited if (shape and reshaped[i]) or (looks and not self.same[i])]
+
     def reshaped(self) -> list[int]:
         """The edited strokes whose form is done on other frames."""
         return [i for i in self.edited if not self.rigid[i]]
@@ -107,8 +112,13 @@ def found(content: st.Content, before: Sequence[int], mapping, slots: marks.Slot
         cut[i] = own != {int(tracks[i])} or int(tracks[i]) in twice or min(along[0], along[-1]) > 1e-4 or max(along[0], along[-1]) < 1 - 1e-4
         if moved[i] or not same[i] or (cut[i] and not rigid[i]):
             edited.append(i)
-    there = set(lines.tolist()) | set(tracks.tolist())
-    return Edit(content, mapping, edited, set(before) - there if chosen is None else set(), slots, moved, cut, same, rigid)
+    deleted = set(before) - present(content) if chosen is None else set()
+    return Edit(content, mapping, edited, deleted, slots, moved, cut, same, rigid)
+
+
+def present(content: st.Content) -> set[int]:
+    """The numbers of the strokes of which a drawing has something, as strokes or joined to others; 0 of those that are not followed yet."""
+    return {0, *content.point.get(gp.LINE, np.zeros(0, int)).tolist(), *content.strokes(gp.TRACK).tolist()}
 
 
 def _numbers(content: st.Content, i: int) -> set[int]:
@@ -139,6 +149,23 @@ def numbers_after(edit: Edit, fresh: int) -> dict[int, int]:
     return result
 
 
+def noted(edit: Edit, numbers: dict[int, int], shape: bool, looks: bool) -> st.Content:
+    """The edited drawing with its new numbers, and marks from where the next edit is measured. What was not done on other frames keeps its marks."""
+    content = edit.content
+    chosen = np.zeros(len(content.sizes), bool)
+    chosen[edit.edited] = True
+    if shape:
+        tracks = content.strokes(gp.TRACK).copy()
+        for i, number in numbers.items():
+            tracks[i] = number
+        content.set_strokes(gp.TRACK, tracks)
+        # The points of what only gives its look are where they were on their stroke.
+        dr.mark_places(content, chosen, ~edit.rigid)
+    if looks:
+        dr.mark_looks(content, edit.slots, chosen)
+    return content
+
+
 def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, shape: bool, looks: bool) -> tuple[st.Content, int]:
     """The content of another frame with the edit, and the number of strokes that could not be reshaped there."""
     tracks = content.strokes(gp.TRACK)
@@ -167,7 +194,11 @@ def spread(edit: Edit, numbers: dict[int, int], content: st.Content, mapping, sh
         rest = _looked(edit, content, [i for i in edit.reshaped() if not edit.same[i]], gone) if looks else []
         made += rest
         gone[[place for place, _ in rest]] = True
-    return _assembled(content, gone, made, edit.slots), left_out
+    # A look that the artist changed there only is still to be done where none came from here.
+    known = dr.has_looks(content, edit.slots)
+    if looks:
+        known |= np.isin(tracks, sorted(set().union(*(edit.numbers(i) for i in edit.edited if not edit.same[i]))))
+    return _assembled(content, gone, made, edit.slots, known), left_out
 
 
 def to_complex(mapping, points: np.ndarray) -> np.ndarray:
@@ -282,7 +313,7 @@ def _made(edit, i, number, content, there, before, now, mapping, looks) -> list[
         if not line.is_whole():
             # The next edit goes on where this one is.
             made.point[gp.ALONG] = line.now.astype(np.float32)
-        if looks:
+        if looks and not edit.same[i]:
             spread_looks.look_like(made, edit.content, spread_looks.sources(edit.content, [i])[0], spread_looks.changed(content, line.piece.index))
         found.append((line.piece.index, made))
     return found
@@ -408,8 +439,9 @@ def _like(content: st.Content, base: _Piece, where: np.ndarray, points: np.ndarr
     return made
 
 
-def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]], slots: marks.Slots) -> st.Content:
-    """The content without the strokes `gone`, with new strokes at the places that they take."""
+def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.Content]], slots: marks.Slots, known: np.ndarray) -> st.Content:
+    """The content without the strokes `gone`, with new strokes at the places that they take. The looks of new ones are noted where what was there has a
+    `known` look."""
     stay = np.flatnonzero(~gone)
     places = [(float(i), 0, k) for k, i in enumerate(stay)]
     places += [(float(place), 1 + k, len(stay) + k) for k, (place, _) in enumerate(made)]
@@ -418,7 +450,8 @@ def _assembled(content: st.Content, gone: np.ndarray, made: list[tuple[int, st.C
         whole = st.joined(whole, each)
     if not made:
         return whole
-    result = st.chosen(whole, np.array([k for *_, k in sorted(places)]))
-    new = np.isin(np.array([k for *_, k in sorted(places)]), np.arange(len(stay), len(whole.sizes)))
-    dr.mark_looks(result, slots, new)
+    order = np.array([k for *_, k in sorted(places)])
+    result = st.chosen(whole, order)
+    note = np.array([False] * len(stay) + [bool(known[place]) for place, _ in made])
+    dr.mark_looks(result, slots, note[order])
     return result

@@ -10,7 +10,6 @@ from ...blender.errors import Problem
 from ...common import jobs
 from ...common.operators import Long
 from ...common.wording import counted
-from .. import drawings as dr
 from .. import moved, records, spread_looks, spreading
 from .match_lines import nothing_traced, numbered
 from .tracing_base import OnFootage
@@ -53,6 +52,8 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         if not self._work_on:
             raise Problem("No stroke on this frame differs from what was traced: edit strokes here first, then press this")
         self._done, self._left_out = [], 0
+        self._there: dict[tuple[str, int], set[int]] = {}
+        """By layer and frame the numbers of what was there before."""
         return jobs.Stepper(self._steps(), "Editing")
 
     def _read(self, layer, shown: int, record: records.Layer):
@@ -72,8 +73,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         edit = spreading.found(contents[shown], record.numbers.get(shown, []), mapper.at(0, shown), marks.Slots(self._ob.data), chosen)
         if not self.delete:
             edit.deleted = set()
-        if not (self.shape or self.look):
-            edit.edited = []
+        edit.keep(self.shape, self.look)
         return layer.name, shown, edit, contents, mapper
 
     def _steps(self):
@@ -81,8 +81,9 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         done = 0
         for name, shown, edit, contents, mapper in self._work_on:
             highest = max(int(each.strokes(gp.TRACK).max(initial=0)) for each in contents.values())
-            numbers = spreading.numbers_after(edit, highest + 1)
+            numbers = spreading.numbers_after(edit, highest + 1) if self.shape else {}
             for frame, content in contents.items():
+                self._there[name, frame] = spreading.present(content)
                 if frame != shown:
                     made, left_out = spreading.spread(edit, numbers, content, mapper.at(0, frame), self.shape, self.look)
                     self._left_out += left_out
@@ -91,7 +92,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
                 done += 1
                 yield done / total
             # Last, since the other frames are made from the marks that change now.
-            self._done.append((name, shown, _noted(edit, numbers)))
+            self._done.append((name, shown, spreading.noted(edit, numbers, self.shape, self.look)))
 
     def finish(self, _context, _work):
         guard.need_open(gp.find_layer(self._ob, name) for name, *_ in self._work_on)
@@ -105,7 +106,7 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
                 # An edit of looks leaves the points, by which the drawing of a version without marks counts as traced.
                 marks.make_the_artists(handle)
                 record.marked.add(frame)
-            record.numbers[frame] = content.strokes(gp.TRACK).tolist()
+            record.numbers[frame] = self._numbers_of(name, frame, content, record.numbers.get(frame, []))
             yield count / len(self._done)
         records.write(self._ob.data, kept)
         marks.remember(self._ob.data)
@@ -117,6 +118,14 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         said = [f"{edited} edited"] if edited else []
         said += [f"{deleted} deleted"] if deleted else []
         return f"{' and '.join(said)} {'stroke' if edited + deleted == 1 else 'strokes'}, on {counted(frames, 'other frame')}"
+
+    def _numbers_of(self, name: str, frame: int, content, before: list[int]) -> list[int]:
+        """The numbers that are noted of a drawing: those of its strokes, and of those that the artist deleted and that stay on other frames."""
+        shown, edit = next((shown, edit) for of, shown, edit, *_ in self._work_on if of == name)
+        there = self._there[name, frame]
+        # Without their shape, strokes that were joined are still several on the other frames.
+        joined = there & set(before) if frame == shown and not self.shape else set()
+        return sorted({*content.strokes(gp.TRACK).tolist(), *(set(before) - there - edit.deleted), *joined})
 
     def _not_reshaped(self) -> str:
         """Which moved strokes are not reshaped on other frames; empty if all are."""
@@ -130,20 +139,6 @@ class ROTOTOON_OT_spread_edits(Long, OnFootage, bpy.types.Operator):
         if pieces:
             said.append(f"{'1 stroke is' if pieces == 1 else f'{pieces} strokes are'} what Remove Hidden Lines left: move the points on another frame")
         return f"not reshaped: {', and '.join(said)}" if said else ""
-
-
-def _noted(edit: spreading.Edit, numbers: dict[int, int]) -> st.Content:
-    """The edited drawing with its new numbers, and marks from where the next edit is measured."""
-    content = edit.content
-    tracks = content.strokes(gp.TRACK).copy()
-    chosen = np.zeros(len(content.sizes), bool)
-    for i, number in numbers.items():
-        tracks[i], chosen[i] = number, True
-    content.set_strokes(gp.TRACK, tracks)
-    # The points of what only gives its look are where they were on their stroke.
-    dr.mark_places(content, chosen, ~edit.rigid)
-    dr.mark_looks(content, edit.slots, chosen)
-    return content
 
 
 CLASSES = (ROTOTOON_OT_spread_edits,)
