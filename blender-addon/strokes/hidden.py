@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,8 @@ from ..lines import rototoon_changes as traced_changes
 
 SUFFIX = hierarchy.ASIDE
 """Suffix of the name of a layer with hidden lines."""
+ROUNDING = 1e-3
+"""Intervals are kept in single precision. Ends closer than this to a whole number may have been one."""
 _POLYLINE, _SPLINE, _CHAIN = range(3)
 
 
@@ -276,7 +279,7 @@ def _built(ob, entry: _Entry, content: st.Content, kept, parts, pieces: _Pieces,
     for name, values in content.point.items():
         result.point[name] = _blended(values, indices, weights)
     result.curve = {name: values[source].copy() for name, values in content.curve.items()}
-    _mark_parts(result, pieces, part, cut)
+    _mark_parts(result, pieces.intervals[part[cut]], cut, _joints(content, source[cut]))
     _part_fills_from_lines(ob, result, part, entry.fills[source], touched[source])
     if touched.any():
         traced_changes.follow(content, result, source, marks.Slots(ob.data))
@@ -307,13 +310,40 @@ def _blended(values: np.ndarray, indices: np.ndarray, weights: np.ndarray) -> np
     return np.where(shaped != 0, values[indices] * shaped, 0).sum(1).astype(values.dtype)
 
 
-def _mark_parts(result: st.Content, pieces: _Pieces, part: np.ndarray, cut: np.ndarray) -> None:
-    """Stores the interval of each part, and makes the parts open."""
+def _joints(content: st.Content, strokes: np.ndarray) -> list[np.ndarray | None]:
+    """For each of the strokes the parameters, on the stroke that it was cut from, of the joints of its own pieces; `None` of a complete stroke.
+
+    Between two joints a parameter is proportional to that of the complete stroke. What has another number of points since then is taken as
+    proportional from end to end.
+    """
+    forms, known = _forms(content), content.strokes(gp.INTERVAL).astype(np.float64)
+    found: list[np.ndarray | None] = []
+    for i in strokes.tolist():
+        first, last = known[i]
+        if first == last:
+            found.append(None)
+            continue
+        points = int(content.sizes[i])
+        own = max({_POLYLINE: points - 1, _SPLINE: points - 2}.get(int(forms[i]), points // 2), 1)
+        fitting = (joints for joints in _possible_joints(first, last) if len(joints) == own + 1)
+        found.append(next(fitting, np.linspace(first, last, own + 1)))
+    return found
+
+
+def _possible_joints(first: float, last: float) -> Iterator[np.ndarray]:
+    """The joints of a piece from one parameter to another: both, and the whole numbers between. An end that is one but for rounding may be a joint more."""
+    for before, after in product((0.0, ROUNDING, -ROUNDING), repeat=2):
+        between = np.arange(np.floor(first - before) + 1, np.ceil(last + after))
+        yield np.concatenate([[first], between.clip(first, last), [last]])
+
+
+def _mark_parts(result: st.Content, parts: np.ndarray, cut: np.ndarray, joints: list[np.ndarray | None]) -> None:
+    """Stores the interval of each part, and makes the parts open. `parts` are their intervals on the strokes that are cut now, and `joints` tell
+    where these are on complete strokes."""
     if not cut.any():
         return
-    which = part[cut]
     intervals = result.strokes(gp.INTERVAL).copy()
-    intervals[cut] = pieces.intervals[which]
+    intervals[cut] = [own if on is None else np.interp(own, np.arange(len(on)), on) for own, on in zip(parts, joints, strict=True)]
     result.set_strokes(gp.INTERVAL, intervals)
     cyclic = result.strokes("cyclic").copy()
     cyclic[cut] = False
@@ -334,7 +364,8 @@ def _part_fills_from_lines(ob, result: st.Content, part, fills, touched) -> None
         opacity = gp.blank("opacity", int(result.starts[-1])) if opacity is None else opacity
         opacity[np.repeat(carrier, result.sizes)] = 0
         intervals = result.strokes(gp.INTERVAL).copy()
-        intervals[carrier] = np.stack([np.zeros(carrier.sum()), result.sizes[carrier]], 1)
+        whole = carrier & ~intervals.any(1)
+        intervals[whole] = np.stack([np.zeros(whole.sum()), result.sizes[whole]], 1)
         result.set_strokes(gp.INTERVAL, intervals)
         result.kinds.setdefault("opacity", "FLOAT")
         result.point["opacity"] = opacity
