@@ -26,7 +26,7 @@ from ..common.wording import counted
 from ..lines import choosing, properties, tracing
 from ..lines import drawings as dr
 from ..lines import plan as lines_plan
-from ..lines.operators.tracing_base import plan_of
+from ..lines.run import plan_of
 from . import collecting
 
 SAME = 0.01

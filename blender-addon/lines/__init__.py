@@ -14,6 +14,7 @@ the artist's and are never written; their strokes are followed.
 `plan`                which drawings are followed, which frames are traced, as documents
 `looks`               material, radius and opacity of strokes
 `tracing`             one run: reads, traces in a thread, writes
+`run`                 Trace Drawing and Carry Strokes as one run, for operators and scripts
 `given`               drawings that a document gives, as a layer
 `off_ink`             drawings of the artist whose picture was drawn anew
 `explained`           new strokes on lines that another group of layers follows

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..blender import grease_pencil as gp
@@ -40,6 +41,28 @@ def to_carry(ob, active: bool, new: bool) -> Chosen:
     guard.need_some(wanted)
     names = [layer.name for layer in guard.open_layers(wanted)]
     home = gp.active_layer(ob)
-    home = home.name if home is not None and home.name in names else names[-1]
-    traced = ob.rototoon.lines_layer in names
-    return Chosen(names, ob.rototoon.lines_layer if traced else home, new or traced, guard.left_out(wanted))
+    return _carried(ob, names, "" if home is None else home.name, new, guard.left_out(wanted))
+
+
+def to_carry_named(ob, names: Sequence[str], new: bool) -> Chosen:
+    """The same for layers by name; new strokes are drawn on the last one. Raises a `Problem` if one of them cannot be carried, or is closed."""
+    if not names:
+        raise Problem("layers: found none, expected the names of layers")
+    names = list(dict.fromkeys(names))
+    for name in names:
+        layer = gp.find_layer(ob, name)
+        if layer is None:
+            raise Problem(f'"{ob.name}" has no layer "{name}"')
+        if guard.as_contours(ob, name):
+            raise Problem(f'The layer "{name}" has contours: track them')
+        if not dr.may_have_lines(ob, layer):
+            raise Problem(f'The layer "{name}" has snapped lines or paint: carry another one')
+    guard.need_open(gp.find_layer(ob, name) for name in names)
+    return _carried(ob, names, names[-1], new)
+
+
+def _carried(ob, names: list[str], home: str, new: bool, left: str = "") -> Chosen:
+    traced = ob.rototoon.lines_layer
+    if traced in names:
+        return Chosen(names, traced, True, left)
+    return Chosen(names, home if home in names else names[-1], new, left)

@@ -62,7 +62,12 @@ EMPTY = st.Content(np.zeros(0, np.int32), np.zeros(0, np.int8))
 def layers(ob, active: bool = False) -> list:
     """The layers that may have lines, closed ones too: those without contours, snapped lines and paint. With `active`, only the active
     layer."""
-    return [layer for layer in st.drawn_layers(ob, active) if layer.name != ob.rototoon.snapped_layer and not st.is_paint(ob, layer)]
+    return [layer for layer in st.drawn_layers(ob, active) if may_have_lines(ob, layer)]
+
+
+def may_have_lines(ob, layer) -> bool:
+    """Whether a layer without contours may have lines: it has neither snapped lines nor paint."""
+    return layer.name != ob.rototoon.snapped_layer and not st.is_paint(ob, layer)
 
 
 def sum_of(content: st.Content) -> int:

@@ -15,9 +15,9 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.operators import OnDrawing
-from ..lines import doubts, drawings, properties, tracing
+from ..lines import choosing, doubts, drawings, run, tracing
 from ..lines import plan as plans
-from ..lines.operators.tracing_base import OnFootage, plan_of
+from ..lines.operators.tracing_base import OnFootage
 from .refusing import need, told
 
 
@@ -54,6 +54,8 @@ class Drawn:
     """Scene frames on which no line or hardly any was found, rising."""
     off: tuple[int, ...] = ()
     """Scene frames with a drawing of the artist that does not lie on the lines of its picture, rising."""
+    warnings: tuple[str, ...] = ()
+    """What the operator would report as a warning."""
 
 
 @told
@@ -63,17 +65,17 @@ def trace_drawing(
     *,
     style: str = "",
     sensitivity: float | None = None,
+    hold: bool = True,
     progress: Progress | None = None,
 ) -> Drawn:
     """Traces the lines of the footage on the object's layer of lines, as the operator Trace Drawing.
 
     `frames` are the first and last scene frame; by default all of the footage. `style` is ``auto``, ``clean`` or ``rough``;
-    `sensitivity` is 0.1 to 10. By default both are those of the panel. `progress(fraction, step)` is called on this thread; it returns
-    ``False`` to cancel, which raises `RuntimeError` and changes nothing.
+    `sensitivity` is 0.1 to 10. By default both are those of the panel. With `hold`, a frame that shows the same drawing as the one before
+    holds it. `progress(fraction, step)` is called on this thread; it returns ``False`` to cancel, which raises `RuntimeError` and changes nothing.
     """
     need(ob, OnFootage)
-    name = ob.rototoon.lines_layer
-    return _run(ob, [name], name, True, frames, style, sensitivity, progress)
+    return _run(ob, choosing.to_trace(ob), frames, _choices(style, sensitivity, hold), progress)
 
 
 @told
@@ -85,36 +87,32 @@ def carry_strokes(
     new_lines: bool = False,
     style: str = "",
     sensitivity: float | None = None,
+    hold: bool = True,
     progress: Progress | None = None,
 ) -> Drawn:
     """Carries the artist's strokes on some layers to the other frames, as the operator Carry Strokes.
 
-    With `new_lines`, lines of the footage that no stroke explains become strokes on the last of the layers. The other arguments are
-    those of `trace_drawing`.
+    With `new_lines`, lines of the footage that no stroke explains become strokes on the last of the layers. If the layer of Trace Drawing is
+    among them, they become strokes there, also without it. Layers that are locked or hidden are refused. The other arguments are those of
+    `trace_drawing`.
     """
     need(ob, OnFootage)
-    if not layers:
-        raise Problem("layers: found none, expected the names of layers")
-    for name in layers:
-        if gp.find_layer(ob, name) is None:
-            raise Problem(f'"{ob.name}" has no layer "{name}"')
-        if name in {layer.name for layer in gp.layers(ob, ob.rototoon.contours_layer)}:
-            raise Problem(f'The layer "{name}" has contours: track them')
-    return _run(ob, list(layers), layers[-1], new_lines, frames, style, sensitivity, progress)
+    return _run(ob, choosing.to_carry_named(ob, layers, new_lines), frames, _choices(style, sensitivity, hold), progress)
 
 
-def _run(ob, names, home, new, frames, style, sensitivity, progress) -> Drawn:
-    settings = ob.rototoon
+def _choices(style: str, sensitivity: float | None, hold: bool) -> run.Choices:
+    if sensitivity is not None and not run.LEAST <= sensitivity <= run.MOST:
+        raise Problem(f"sensitivity: found {sensitivity}, expected a number from {run.LEAST} to {run.MOST:g}")
+    return run.Choices(style, sensitivity or 0.0, hold)
+
+
+def _run(ob, chosen: choosing.Chosen, frames, choices: run.Choices, progress) -> Drawn:
     jobs.clear_the_way()
-    plan = plan_of(ob, names, *(frames or plans.film(ob)), home if new else "")
-    style = style or settings.line_style.lower()
-    sensitivity = settings.line_sensitivity if sensitivity is None else sensitivity
-    options = tracing.Options(style, sensitivity, leave_out=properties.left_out_of_lines(settings))
-    worker = tracing.worker(plan, options)
-    worker.run_here(progress)
-    done = jobs.drained(tracing.finishing(ob, plan, worker.result, home))
-    frames, breaks, bare, off = (tuple(sorted(each)) for each in (done.frames, done.breaks, done.bare, done.off))
-    return Drawn(len(done.numbers), frames, done.kept, breaks, bare, off)
+    begun = run.begin(ob, chosen, frames or plans.film(ob), choices)
+    begun.worker.run_here(progress)
+    done = jobs.drained(tracing.finishing(ob, begun.plan, begun.worker.result, begun.home))
+    drawn, breaks, bare, off = (tuple(sorted(each)) for each in (done.frames, done.breaks, done.bare, done.off))
+    return Drawn(len(done.numbers), drawn, done.kept, breaks, bare, off, tuple(run.warnings(done)))
 
 
 @told

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from rototoon.types import Progress
 
-from ..blender import colours, fill_materials, guard, materials
+from ..blender import colours, fill_materials, guard, materials, preferences
 from ..blender import grease_pencil as gp
 from ..blender.errors import Problem
 from ..common import jobs
@@ -104,7 +104,8 @@ def fill_drawings(
     options = filling.Options(
         settings.line_sensitivity if sensitivity is None else sensitivity,
         settings.fill_confidence if confidence is None else confidence,
-        leave_out=properties.left_out(settings),
+        preferences.threads(),
+        properties.left_out(settings),
     )
     worker = filling.worker(plan, options)
     worker.run_here(progress)

@@ -13,7 +13,7 @@ from ...common.operators import Long
 from ...common.wording import counted, listed, stayed
 from ...lines import doubts
 from ...lines import tracing as lines_tracing
-from ...lines.operators.tracing_base import keys_now, where_to_look
+from ...lines.run import keys_now, where_to_look
 from ...paint import filling
 from .. import collecting, painting, tracing
 from .send_to_farm import folder_of

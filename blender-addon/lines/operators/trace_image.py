@@ -15,8 +15,7 @@ from ...capture.operators.footage_from_reference import reference_image
 from ...common.operators import Long, OnDrawing
 from .. import drawings as dr
 from .. import plan as pl
-from .. import properties, tracing
-from .tracing_base import told
+from .. import properties, run, tracing
 
 LIFT = 1e-3
 """Distance of the strokes from the image in scene units, so that they are seen."""
@@ -67,7 +66,7 @@ class ROTOTOON_OT_trace_image(Long, OnDrawing, bpy.types.Operator):
 
     def finish(self, _context, work):
         done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
-        return told(done)
+        return run.told(done)
 
 
 class _Still:

@@ -1,14 +1,11 @@
-"""Base of the operators that trace: which frames, how the drawings are, and what the report says."""
+"""Base of the operators that trace: which frames, and how the drawings are."""
 
 from __future__ import annotations
 
 import bpy
 
-from ...blender import guard, preferences
 from ...common.operators import Long, OnDrawing
-from ...common.wording import counted, listed
-from .. import choosing, doubts, properties, tracing
-from .. import drawings as dr
+from .. import choosing, properties, run, tracing
 from .. import plan as pl
 
 FRAMES = (
@@ -62,7 +59,7 @@ class Sensitive:
 
     def chosen_sensitivity(self, settings) -> float:
         """The operator's own sensitivity, or that of the panel. The least one is 0.1, because 0 means the panel's."""
-        return max(self.sensitivity, 0.1) if self.sensitivity else settings.line_sensitivity
+        return run.sensitivity(settings, self.sensitivity)
 
 
 class Tracing(Framed, Sensitive, Long, OnFootage):
@@ -76,60 +73,13 @@ class Tracing(Framed, Sensitive, Long, OnFootage):
 
     def start(self, context, chosen: choosing.Chosen):
         """The worker for some layers."""
-        self._ob, self._home = context.object, chosen.home
-        self._plan = plan_of(self._ob, chosen.layers, *self.span(context), chosen.home if chosen.new else "")
-        self._plan.hold = self.hold
-        settings = self._ob.rototoon
-        style = settings.line_style if self.style == "SETTINGS" else self.style
-        chosen = style.lower(), self.chosen_sensitivity(settings), preferences.threads(), properties.left_out_of_lines(settings)
-        options = tracing.Options(*chosen)
-        return tracing.worker(self._plan, options)
+        self._ob = context.object
+        choices = run.Choices("" if self.style == "SETTINGS" else self.style.lower(), self.sensitivity, self.hold)
+        self._begun = run.begin(self._ob, chosen, self.span(context), choices)
+        return self._begun.worker
 
     def finish(self, _context, work):
-        done = yield from tracing.finishing(self._ob, self._plan, work.result, self._home)
-        self.warn(where_to_look(done))
-        self.warn(where_nothing_is(done))
-        self.warn(where_another_picture_is(done))
-        self.warn(doubts.told(done.confidence))
-        return told(done)
-
-
-def plan_of(ob, names: list[str], first: int, last: int, home: str) -> pl.Plan:
-    """The plan for some layers and scene frames; `home` is as for `plan.make`. Reads the layers, and changes nothing."""
-    guard.need_apart(ob, names)
-    wanted = {frame for layer in dr.read(ob, names) for frame in pl.needed(layer, first, last)}
-    return pl.make(ob, dr.read(ob, names, wanted), first, last, home)
-
-
-def where_to_look(done: tracing.Done) -> str:
-    """The frames on which many strokes end or begin; empty if there are none."""
-    return f"many strokes end or begin on {listed(sorted(done.breaks))}: look there, and give a drawing of yours" if done.breaks else ""
-
-
-def where_nothing_is(done: tracing.Done) -> str:
-    """The frames on which hardly any line was found; empty if there are none."""
-    frames = "frame" if len(done.bare) == 1 else "frames"
-    return f"no line or hardly any was found on {frames} {listed(sorted(done.bare))}; a higher Sensitivity finds fainter ink" if done.bare else ""
-
-
-def where_another_picture_is(done: tracing.Done) -> str:
-    """The frames on which a drawing of the artist lies beside the lines of its picture; empty if there are none."""
-    if not done.off:
-        return ""
-    which = f"your drawing on frame {min(done.off)} does not lie" if len(done.off) == 1 else f"your drawings on frames {listed(sorted(done.off))} do not lie"
-    return f"{which} on the lines of the picture, which may have been drawn anew: the strokes are marked; draw them again, or delete the drawing and trace it"
-
-
-def told(done: tracing.Done) -> str:
-    """What a run has done."""
-    if not done.frames:
-        return "All of these frames have drawings of yours: nothing was drawn"
-    text = f"{counted(len(done.numbers), 'stroke')} on {counted(len(done.frames), 'frame')}"
-    return ", ".join(filter(None, (text, keys_now(done.kept))))
-
-
-def keys_now(kept: int) -> str:
-    """That a number of traced drawings are the artist's now; empty if there are none."""
-    if kept == 1:
-        return "1 drawing that you had changed is a key now"
-    return f"{kept} drawings that you had changed are keys now" if kept else ""
+        done = yield from tracing.finishing(self._ob, self._begun.plan, work.result, self._begun.home)
+        for text in run.warnings(done):
+            self.warn(text)
+        return run.told(done)
