@@ -51,15 +51,11 @@ class Result:
                 yield number + offset, key, off_ink.dense(points[span], bool(closed[i])), widths[span]
 
 
-def strokes(own: Result, others: Sequence[Result], offset: int) -> set[numbers.Key]:
-    """The keys of the new strokes of a group that lie on strokes of other groups. The scene shows picture n on frame n + offset."""
+def strokes(own: Result, others: Sequence[Result], offset: int) -> Iterator[float]:
+    """Returns the keys of the new strokes of a group that lie on strokes of other groups, in steps of a frame. The scene shows picture n on frame
+    n + offset."""
     shown, known = own.group.document["footage"], own.followed()
-    there: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
-    for other in others:
-        theirs = other.followed()
-        for frame, key, *line in other.lines(offset) if theirs else ():
-            if key in theirs:
-                there.setdefault(frame, []).append(line)
+    there = yield from _followed(others, offset)
     on: dict[numbers.Key, float] = {}
     lengths: dict[numbers.Key, int] = {}
     # One frame after the other: the places of a whole film are as large as its pictures.
@@ -69,7 +65,19 @@ def strokes(own: Result, others: Sequence[Result], offset: int) -> set[numbers.K
             if key not in known:
                 lengths[key] = lengths.get(key, 0) + len(line)
                 on[key] = on.get(key, 0.0) + (len(line) * (1 - ink.off(line)) if ink is not None else 0.0)
+        yield 0.0
     return {key for key, length in lengths.items() if on[key] > MOST * length}
+
+
+def _followed(others: Sequence[Result], offset: int) -> Iterator[float]:
+    """Returns by scene frame the lines of the strokes that groups follow, with their widths, in steps of a frame."""
+    there: dict[int, list[tuple[np.ndarray, np.ndarray]]] = {}
+    for other in others:
+        theirs = other.followed()
+        for frame, each in groupby(other.lines(offset) if theirs else (), key=lambda each: each[0]):
+            there.setdefault(frame, []).extend((line, widths) for _, key, line, widths in each if key in theirs)
+            yield 0.0
+    return there
 
 
 def _ink(drawn: list[tuple[np.ndarray, np.ndarray]], size: tuple[int, int]) -> off_ink.Ink | None:

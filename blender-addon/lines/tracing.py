@@ -149,11 +149,11 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str, beside: Sequenc
             found_bare = bare(traced, group.document["footage"]["height"])
             # What the artist has drawn there was not looked for.
             done.bare |= {number + plan.offset for number in found_bare} & set(range(plan.first, plan.last + 1)) - group.seeds.keys()
-        left_out = _left_out(ob, own, [each for each in results if each is not own], plan.offset, home)
+        left_out = yield from _left_out(ob, own, [each for each in results if each is not own], plan.offset, home)
         for k, layer in enumerate(group.layers):
             record = kept.setdefault(layer.name, records.Layer())
             _mark_keys(ob, layer, group, k, keyed, record, done)
-            _mark_off(ob, layer, group, k, plan, done)
+            yield from _mark_off(ob, layer, group, k, plan, done)
             placed = _placed(group, layer, k, traced, keyed, plan, left_out)
             yield from write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
     records.write(ob.data, kept)
@@ -166,14 +166,14 @@ def _result(group: pl.Group, traced: Traced, offset: int, counter, home: str) ->
     return explained.Result(group, traced, _keyed(group, traced, offset, counter, home if home in own else own[-1]))
 
 
-def _left_out(ob, own: explained.Result, others: list[explained.Result], offset: int, home: str) -> set[numbers.Key]:
-    """The strokes of a group that are not drawn."""
+def _left_out(ob, own: explained.Result, others: list[explained.Result], offset: int, home: str) -> Iterator[float]:
+    """Returns the strokes of a group that are not drawn. In steps: to compare all lines of a film takes seconds."""
     if not own.group.new:
         return {key for each in own.keyed.values() for key in each} - own.followed()
     if home == ob.rototoon.lines_layer and not own.group.seeds:
         # Trace Drawing draws all lines there, and so does this.
         return set()
-    return explained.strokes(own, others, offset)
+    return (yield from explained.strokes(own, others, offset))
 
 
 def _need_unchanged(ob, names: list[str], plan: pl.Plan) -> None:
@@ -219,8 +219,8 @@ def _mark_keys(ob, layer: dr.Layer, group: pl.Group, k: int, keyed, record: reco
     done.kept += len(layer.edited)
 
 
-def _mark_off(ob, layer: dr.Layer, group: pl.Group, k: int, plan: pl.Plan, done: Done) -> None:
-    """Marks the strokes of the artist's drawings that lie on no line of their picture."""
+def _mark_off(ob, layer: dr.Layer, group: pl.Group, k: int, plan: pl.Plan, done: Done) -> Iterator[float]:
+    """Marks the strokes of the artist's drawings that lie on no line of their picture, in steps of a drawing."""
     size = group.document["footage"]["width"], group.document["footage"]["height"]
     frames = plan.inks.keys() & layer.keys.keys() if group.new else set()
     handles = gp.drawings(gp.find_layer(ob, layer.name)) if frames else {}
@@ -229,6 +229,7 @@ def _mark_off(ob, layer: dr.Layer, group: pl.Group, k: int, plan: pl.Plan, done:
         off_ink.mark(handles[frame][0], off)
         if off.any():
             done.off.add(frame)
+        yield 0.0
 
 
 def _looks_of(group: pl.Group, k: int, keyed) -> looks.Looks:

@@ -108,3 +108,23 @@ def test_what_was_drawn_on_an_image_is_traced_though_it_is_not_saved(addon, libr
     size = np.ptp(content.point["position"], axis=0)
     assert len(content.sizes) >= 1 and size[2] > 5 * size[0]
     assert image.is_dirty and len(bpy.data.images) == images
+
+
+def test_the_window_is_drawn_between_the_frames_on_which_lines_are_compared(addon, film, monkeypatch):
+    off_ink, run, choosing, tracing = addon("lines.off_ink"), addon("lines.run"), addon("lines.choosing"), addon("lines.tracing")
+    made = []
+
+    class Ink(off_ink.Ink):
+        def __init__(self, *given):
+            super().__init__(*given)
+            made[-1] += 1
+
+    monkeypatch.setattr(off_ink, "Ink", Ink)
+    for name, frame in (("A", 1), ("B", 2)):
+        ls.put(addon, film, name, frame, [(ls.lines(frame - 1)[0][0], True)])
+    begun = run.begin(film, choosing.to_carry(film, False, True), (1, 6), run.Choices())
+    begun.worker.run_here()
+    made.append(0)
+    for _ in tracing.finishing(film, begun.plan, begun.worker.result, begun.home):
+        made.append(0)
+    assert sum(made) >= 6 and max(made) == 1
