@@ -7,7 +7,7 @@ fields of an imported document as JSON, and they are in the document again.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -160,10 +160,13 @@ def _need_places(found: contours.Contours) -> None:
 
 def mapper_of(ob, found: contours.Contours, *more: int) -> Mapper:
     """The mappings of an object's contour layers, on the frames of all drawings, those between them, and `more`."""
-    _need_places(found)
     frames = {frame for _, frame in found.drawings} | set(more)
-    if frames:
-        frames = range(min(frames), max(frames) + 1)
+    return mapper_on(ob, found, range(min(frames), max(frames) + 1) if frames else ())
+
+
+def mapper_on(ob, found: contours.Contours, frames: Iterable[int]) -> Mapper:
+    """The same on some frames alone. Through a camera that moves, each frame costs a look at the whole scene."""
+    _need_places(found)
     return Mapper(ob, frames, drawn_points(found), found.layer_names)
 
 

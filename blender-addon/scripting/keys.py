@@ -51,7 +51,7 @@ def set_key(
     for part in wanted:
         if part in known and frame in known[part].keys and not replace:
             raise Problem(f'"{part}" has a key on frame {frame} already: call set_key with replace=True to replace it')
-    mapper = document.mapper_of(ob, found, frame)
+    mapper = document.mapper_on(ob, found, [frame])
     controls = {part: _control(known.get(part), part, points, frame, mapper) for part, points in wanted.items()}
     placed = _on_layers(ob, name, frame, wanted, places)
     made = [_new_part(ob, found, part, closed, len(wanted[part])) for part in wanted if part not in known]
@@ -79,7 +79,7 @@ def _on_layers(ob: bpy.types.Object, name: str, frame: int, wanted, places: dict
     layer = gp.layer(ob, name)
     found = contours.read(ob)
     try:
-        mapper = document.mapper_of(ob, found, frame)
+        mapper = document.mapper_on(ob, found, [frame])
         index = {place: found.layer_names.index(place) for place in places.values()}
         return {part: mapper.at(index[places[part]], frame).to_layer(points) for part, points in wanted.items()}
     except Problem:
@@ -138,6 +138,7 @@ def _control(part: contours.Part | None, name: str, points: np.ndarray, frame: i
         return correspondence.identity(len(points))
     near = min([*part.keys, *part.made], key=lambda other: (abs(other - frame), other))
     stroke = part.keys.get(near) or part.made[near]
+    mapper.extend([near])
     reference = mapper.at(stroke.layer, near).to_pixels(stroke.control_points(part.closed))
     for _, _, matched in identity.match([(part.closed, reference, [])], [(part.closed, points, [])]):
         where = correspondence.locate(points, matched, part.closed)

@@ -167,6 +167,49 @@ def test_a_single_key_is_tracked_through_a_moving_camera(addon, library, tmp_pat
     assert drawn_on(addon, ob, 9) == pytest.approx(found.pixels[8], abs=2e-3)
 
 
+@pytest.fixture
+def steps():
+    """The frames to which the scene is set."""
+    found = []
+
+    def note(scene, *_):
+        found.append(scene.frame_current)
+
+    bpy.app.handlers.frame_change_post.append(note)
+    yield found
+    bpy.app.handlers.frame_change_post.remove(note)
+
+
+def test_a_key_looks_at_its_own_frame_and_that_of_the_key_beside_it(addon, tmp_path, steps):
+    ob = shots.set_up(tmp_path)
+    moving_camera()
+    scripting = addon("scripting")
+    for frame in (1, 5, 9):
+        scripting.set_key(ob, frame, {"square": shots.square(frame - 1)})
+    steps.clear()
+    scripting.set_key(ob, 7, {"square": shots.square(6)})
+    assert set(steps) == {1, 7}
+    steps.clear()
+    corners = shots.square(7)
+    # One point more: it is matched to the key beside it.
+    scripting.set_key(ob, 8, {"square": np.insert(corners, 1, corners[:2].mean(0), 0)})
+    assert set(steps) == {1, 7, 8}
+    for frame in (7, 8):
+        assert drawn_on(addon, ob, frame)[0] == pytest.approx(shots.square(frame - 1)[0], abs=2e-3)
+
+
+def test_make_part_draws_with_a_look_at_its_own_frame(addon, tmp_path, steps):
+    ob = shots.set_up(tmp_path)
+    moving_camera()
+    for frame in (1, 9):
+        addon("scripting").set_key(ob, frame, {"square": shots.square(frame - 1)})
+    bpy.context.scene.frame_set(4)
+    steps.clear()
+    addon("lines.operators.make_part")._draw(ob, 4, shots.diamond(3))
+    assert set(steps) == {4}
+    assert drawn_on(addon, ob, 4) == pytest.approx(shots.diamond(3), abs=2e-3)
+
+
 def test_corrections_of_a_document_come_in_through_a_moving_camera(addon, tmp_path):
     picked = shots.draw_sequence(tmp_path / "frames")
     keys, pins = {"1": shots.square(0).tolist()}, {"5": {"0": [50.0, 40.0]}}

@@ -117,7 +117,7 @@ def _draw(ob, frame: int, contour: np.ndarray) -> int:
     name = ob.rototoon.contours_layer
     layer = gp.layer(ob, name)
     found = contours.read(ob)
-    mapping = document.mapper_of(ob, found, frame).at(found.layer_names.index(name), frame)
+    mapping = document.mapper_on(ob, found, [frame]).at(found.layer_names.index(name), frame)
     gp.make_frames(layer, [frame], gp.KEYFRAME)
     rows = stroke_rows.Rows(np.array([len(contour)], np.int32))
     rows.values = {
