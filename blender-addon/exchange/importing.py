@@ -15,15 +15,16 @@ from .looks import Looks
 
 
 def apply(ob, project: dict[str, Any], looks: Looks | None = None) -> None:
-    """Replaces an object's contours by those of a checked document. The object's footage must be set before. `looks` are those that its parts had."""
-    settings, planes = ob.rototoon, planes_of(ob)
+    """Replaces an object's contours by those of a checked document. The object's footage must be set before. `looks` are those that its parts had;
+    an object without contours has none."""
+    settings, looks = ob.rototoon, looks or Looks()
     _empty(ob)
     settings.extra = files.unknown_of_document(project)
     gp.layer(ob, settings.contours_layer)
     for number, entry in enumerate(project.get("parts", []), 1):
         _add_part(settings, number, entry)
     settings.next_number = len(settings.parts) + 1
-    _write_keys(ob, project, looks or Looks(), planes)
+    _write_keys(ob, project, looks)
     found = contours.read(ob)
     corrected = {frame for entry in project.get("parts", []) for name in ("pins", "centers") for frame in by_frame(entry.get(name))}
     mapper = document.mapper_of(ob, found, *(frame + settings.frame_offset for frame in corrected))
@@ -54,12 +55,6 @@ def need_open(ob, project: dict[str, Any]) -> None:
         guard.need_apart(ob, [settings.snapped_layer], hidden=True)
 
 
-def planes_of(ob) -> dict[str, np.ndarray]:
-    """The artist's points by the layer of contours on which they are. Contours of a document come onto their plane."""
-    found = contours.read(ob)
-    return {found.layer_names[index]: points for index, points in document.drawn_points(found).items()}
-
-
 def _empty(ob) -> None:
     settings = ob.rototoon
     settings.parts.clear()
@@ -77,7 +72,7 @@ def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     ends.put(part, [(frame, ends.LOST) for frame in entry.get("wants_key", [])])
 
 
-def _write_keys(ob, project: dict[str, Any], looks: Looks, planes: dict[str, np.ndarray]) -> None:
+def _write_keys(ob, project: dict[str, Any], looks: Looks) -> None:
     """Writes the artist's strokes on the planes that points show. Farther parts come first, so that nearer ones are drawn over them."""
     settings, stamp = ob.rototoon, stamps.settled(ob)
     drawn: dict[str, dict[int, list[tuple[float, int, dict[str, Any], np.ndarray]]]] = {}
@@ -88,7 +83,7 @@ def _write_keys(ob, project: dict[str, Any], looks: Looks, planes: dict[str, np.
             frames.setdefault(picture, []).append((depth, number, entry, np.asarray(points, np.float64)))
     for name, frames in drawn.items():
         layer, offset = gp.find_layer(ob, name), settings.frame_offset
-        plane = {0: planes[name]} if name in planes else {}
+        plane = {0: looks.planes[name]} if name in looks.planes else {}
         mapper = placement.Mapper(ob, [picture + offset for picture in frames], plane, [name])
         gp.make_frames(layer, sorted(picture + offset for picture in frames), gp.KEYFRAME)
         drawings = gp.drawings(layer)

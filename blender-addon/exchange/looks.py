@@ -1,5 +1,5 @@
-"""The looks of an object's contours: layer, widths, colours, material, and attributes of the artist's own. A document has none of them, so contours
-that come back from one get those that their part had."""
+"""The looks of an object's contours: layer, plane, widths, colours, material, and attributes of the artist's own. A document has none of them, so
+contours that come back from one get those that their part had."""
 
 from __future__ import annotations
 
@@ -43,6 +43,8 @@ class Looks:
     parts: dict[str, Look] = field(default_factory=dict)
     own: dict[str, own_attributes.Kind] = field(default_factory=dict)
     """The artist's own attributes among them."""
+    planes: dict[str, np.ndarray] = field(default_factory=dict)
+    """The artist's points by the layer of contours on which they are. Contours of a document come onto their plane."""
 
     def layer_of(self, name: str, otherwise: str) -> str:
         """The layer of a part."""
@@ -67,7 +69,8 @@ def of(ob) -> Looks:
     with suppress(Problem):
         # New strokes are parts of a document that was written meanwhile. Without footage there is none.
         identity.decide(found, document.mapper_of(ob, found), settings.next_number)
-    looks = Looks(own=found.own())
+    points = document.drawn_points(found)
+    looks = Looks(own=found.own(), planes={found.layer_names[index]: own for index, own in points.items()})
     for part in found.parts:
         if part.keys:
             point, curve, frames = writing.styles(part, found, looks.own)

@@ -11,7 +11,7 @@ from rototoon.documents import by_frame
 
 from ..blender.placement import Mapper
 from ..lines import plane
-from . import drawn, filled, importing
+from . import drawn, filled
 from .looks import Looks
 
 _SNAPPED, _LINES, _FILLS = range(1, 4)
@@ -26,7 +26,7 @@ def need(ob, project: dict[str, Any], looks: Looks) -> None:
     home = {entry["name"]: names.index(looks.layer_of(entry["name"], settings.contours_layer)) for entry in project.get("parts", [])}
     found = [(layer, frame + settings.frame_offset, points) for layer, frame, points in _places(project, home)]
     frames = {frame for _, frame, _ in found}
-    planes = {**importing.planes_of(ob), settings.lines_layer: plane.points(ob, settings.lines_layer), settings.fills_layer: plane.points(ob, settings.fills_layer)}
+    planes = {**looks.planes, settings.lines_layer: plane.points(ob, settings.lines_layer), settings.fills_layer: plane.points(ob, settings.fills_layer)}
     shown = {index: planes[name] for index, name in enumerate(names) if name in planes}
     # Contours are placed on the frames between their keys too.
     mapper = Mapper(ob, range(min(frames), max(frames) + 1) if frames else (), shown, names)

@@ -86,3 +86,13 @@ def test_parts_that_the_object_has_not_get_the_usual_look(addon, film, tmp_path)
     assert round_trip(tmp_path, change) == {"FINISHED"}
     assert not film.data.layers[FRONT].frames and len(shots.pixels(addon, film, 1)) == 3
     assert look(addon, film, 1, "Contours")["radius"] == pytest.approx(0.01)
+
+
+def test_contours_are_read_once_before_and_once_after(addon, film, tmp_path, monkeypatch):
+    contours, read = addon("capture.contours"), []
+    reading = contours.reading
+    path = tmp_path / "out.json"
+    bpy.ops.rototoon.export_document(filepath=str(path))
+    monkeypatch.setattr(contours, "reading", lambda *given: read.append(given) or reading(*given))
+    assert bpy.ops.rototoon.import_document(filepath=str(path), into="ACTIVE", keep_numbers=True) == {"FINISHED"}
+    assert len(read) == 2
