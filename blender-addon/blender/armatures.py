@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import camera as cameras
+from . import world
+from .errors import Problem
 
 SCALE = 100.0
 """Pixels per unit where no camera shows the armature."""
@@ -48,6 +50,14 @@ def bones_of(ob) -> dict[str, Bone]:
         )
         for bone in ob.data.bones
     }
+
+
+def need_posed(ob) -> None:
+    """Raises a `Problem` if Blender does not move the bones of an armature: it would be the same on all frames."""
+    if not world.is_evaluated(ob):
+        raise Problem(
+            f'"{ob.name}" is disabled in viewports or excluded from the view layer, so Blender does not move its bones: show it in the Outliner'
+        )
 
 
 def range_of(ob, scene) -> range:

@@ -17,7 +17,7 @@ _CARRIED_AS_A_WHOLE = {"OBJECT", "ARMATURE", "LATTICE"}
 
 def matrix_of(ob: bpy.types.Object) -> Matrix:
     """The matrix of an object in the world on the current frame. Raises a `Problem` if only Blender could compute it, and does not."""
-    if _is_evaluated(ob):
+    if is_evaluated(ob):
         return ob.matrix_world
     parent = ob.parent
     if has_own_motion(ob) or has_animation(ob.data) or (parent is not None and not _is_carried_as_a_whole(ob)):
@@ -44,7 +44,8 @@ def _is_carried_as_a_whole(ob) -> bool:
     return ob.parent_type in _CARRIED_AS_A_WHOLE and not along
 
 
-def _is_evaluated(ob) -> bool:
+def is_evaluated(ob: bpy.types.Object) -> bool:
+    """Whether Blender computes where an object and its bones are."""
     if ob.visible_get():
         return True
     # Blender evaluates some of what is hidden: what the eye hides, parents, the scene's camera. Its own `is_evaluated` does not tell.

@@ -43,6 +43,7 @@ class ROTOTOON_OT_drive_bones(Manner, _Content, Long, OnArmature, bpy.types.Oper
     def begin(self, context):
         self._ob, self._rests_on = context.object, []
         key_points.table_of(self._ob)
+        armatures.need_posed(self._ob)
         folder, threads = folder_of(self._ob, self.folder), preferences.threads()
         content, motion = self.content, self.motion
         remake = self.remake(folder, motion, content) if self.style else None

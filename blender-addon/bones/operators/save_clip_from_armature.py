@@ -38,6 +38,7 @@ class ROTOTOON_OT_save_clip_from_armature(Long, Performance, OnArmature, bpy.typ
         key_points.table_of(self._ob)
         if self._ob.data.pose_position == "REST":
             raise Problem(f'"{self._ob.name}" is in Rest Position, so its bones do not move: choose Pose Position in the armature\'s properties')
+        armatures.need_posed(self._ob)
         frames = range(self.first, self.last + 1)
         frames = frames if self.last > self.first else armatures.range_of(self._ob, context.scene)
         return jobs.Stepper(key_points.sample(self._ob, frames, self.view, self._postures), "reading poses")
