@@ -131,16 +131,21 @@ def _is_traced(content: st.Content, total: int, frame: int, record: records.Laye
 
 def keep(ob, layer: Layer) -> None:
     """Makes traced drawings that the artist changed the artist's."""
-    target = gp.find_layer(ob, layer.name)
-    handles = gp.drawings(target) if layer.edited else {}
-    for frame in layer.edited:
+    make_the_artists(gp.find_layer(ob, layer.name), layer.edited)
+
+
+def make_the_artists(layer, frames: Iterable[int]) -> None:
+    """Makes traced drawings of a layer the artist's."""
+    frames = set(frames)
+    handles = gp.drawings(layer) if frames else {}
+    for frame in frames:
         handle = handles[frame][0]
         starts = gp.offsets(handle)
         gp.put(handle, gp.MADE, np.zeros(len(starts) - 1, bool))
         if gp.has(handle, gp.CONFIDENCE):
             # What the artist has drawn is beyond doubt.
             gp.put(handle, gp.CONFIDENCE, np.ones(int(starts[-1])))
-    gp.set_keyframe_type(target, dict.fromkeys(layer.edited, gp.KEYFRAME))
+    gp.set_keyframe_type(layer, dict.fromkeys(frames, gp.KEYFRAME))
 
 
 def mark(content: st.Content, slots: marks.Slots) -> None:

@@ -20,7 +20,7 @@ from ..common.reports import Report
 from ..common.reports import take as take_reports
 from .delivered import Moved, conform
 from .keys import set_key
-from .lines import Drawn, Line, carry_strokes, doubtful_lines, lines, trace_drawing
+from .lines import Drawn, Line, accept_lines, carry_strokes, doubtful_lines, lines, trace_drawing
 from .paint import Painted, Recoloured, Region, fill_drawings, fill_region, recolour, recolours, regions, remove_recolour
 from .reading import End, Exchange, Part, Track, ends, exchanges, lost_frames, parts, tracks, unseen, wanted_keys, weakest_frame
 from .work import Tracked, track
@@ -38,6 +38,7 @@ __all__ = [
     "Report",
     "Track",
     "Tracked",
+    "accept_lines",
     "carry_strokes",
     "conform",
     "doubtful_lines",

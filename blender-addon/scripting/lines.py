@@ -15,7 +15,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from ..common.operators import OnDrawing
-from ..lines import choosing, doubts, drawings, run, tracing
+from ..lines import accepting, choosing, doubts, drawings, run, tracing
 from ..lines import plan as plans
 from ..lines.operators.tracing_base import OnFootage
 from .refusing import need, told
@@ -133,6 +133,26 @@ def doubtful_lines(ob: bpy.types.Object) -> list[doubts.Doubt]:
     """The traced strokes of all layers that are in doubt on some frame, by layer and number. Changes nothing."""
     need(ob, OnDrawing, guard.NOTHING)
     return doubts.summed(doubts.places(ob))
+
+
+@told
+def accept_lines(ob: bpy.types.Object, frame: int, numbers: Sequence[int] | None = None, *, layer: str = "") -> tuple[int, ...]:
+    """Says that strokes in doubt are right on the drawing that a scene frame shows, as Accept Stroke. Returns their numbers, rising.
+
+    By default the layer is that of Trace Drawing, and all strokes that are in doubt on the drawing are accepted. A number that is not in doubt
+    there is refused.
+    """
+    need(ob, OnDrawing)
+    name = layer or ob.rototoon.lines_layer
+    if gp.find_layer(ob, name) is None:
+        raise Problem(f'"{ob.name}" has no layer "{name}"')
+    found = [place for place in accepting.shown(ob, frame) if place.layer == name]
+    wanted = {place.number for place in found} if numbers is None else set(numbers)
+    missing = wanted - {place.number for place in found}
+    if missing:
+        raise Problem(f'numbers: stroke {min(missing)} is not in doubt on frame {frame} of the layer "{name}"')
+    accepting.accept(ob, [place for place in found if place.number in wanted])
+    return tuple(sorted(wanted))
 
 
 def _lines(ob: bpy.types.Object, content: st.Content, mapping, traced: bool) -> list[Line]:

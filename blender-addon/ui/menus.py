@@ -42,7 +42,7 @@ class ROTOTOON_MT_tween(_Menu):
 class ROTOTOON_MT_lines(_Menu):
     bl_idname = "ROTOTOON_MT_lines"
     bl_label = "Lines"
-    names = ("trace_drawing", "trace_image", "carry_strokes", "", "next_doubt", "match_lines", "spread_edits", "make_part", "", "clear_lines")
+    names = ("trace_drawing", "trace_image", "carry_strokes", "", "next_doubt", "accept_doubt", "match_lines", "spread_edits", "make_part", "", "clear_lines")
 
 
 class ROTOTOON_MT_paint(_Menu):

@@ -290,6 +290,7 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         row = column.row(align=True)
         row.operator("rototoon.next_doubt", icon="FRAME_NEXT")
         row.menu("ROTOTOON_MT_doubts", text="", icon="DOWNARROW_HLT")
+        column.operator("rototoon.accept_doubt", icon="CHECKMARK")
         column.operator("rototoon.match_lines", icon="UV_SYNC_SELECT")
         column.operator("rototoon.spread_edits", icon="NEXT_KEYFRAME")
         column.operator("rototoon.make_part", icon="MOD_MASK")

@@ -244,6 +244,11 @@ def _traced_and_doubted(addon, ob):
     gp.put(handle, gp.CONFIDENCE, np.full(int(gp.offsets(handle)[-1]), 0.3))
 
 
+def _traced_and_doubted_here(addon, ob):
+    _traced_and_doubted(addon, ob)
+    bpy.context.scene.frame_set(3)
+
+
 def _traced_and_moved(addon, ob):
     _traced(addon, ob)
     gp = addon("blender.grease_pencil")
@@ -305,6 +310,7 @@ _PLACED = {
 }  # fmt: skip
 _STYLED = {"motion": "walk", "content": "plain", "style": "old"}
 OPERATORS = {
+    "accept_doubt": Call(_L, prepare=_traced_and_doubted_here, options={"every": True}),
     "apply_motion": Call(_C, _C, options=_STYLED),
     "carry_strokes": Call(frozenset({INK}), prepare=_ink_active),
     "choose_body": Call(frozenset({LIMBS}), options={"body": "quadruped"}),

@@ -3,10 +3,11 @@
 import json
 
 import bpy
+import line_shots as ls
 import numpy as np
 import pytest
 from line_stage import film, pictures  # noqa: F401 - fixtures
-from line_stage import attribute, handle_of, said
+from line_stage import attribute, handle_of, kinds, said
 
 
 @pytest.fixture
@@ -118,3 +119,64 @@ def test_without_doubt_nothing_is_marked(addon, film, fake):
     assert said(addon).warnings == () and listed(addon) == []
     assert not gp.has(handle_of(addon, film, "Lines", 5), gp.CONFIDENCE), "no values are kept for strokes beyond doubt"
     assert bpy.ops.rototoon.next_doubt() == {"FINISHED"} and said(addon).text == "No stroke is in doubt"
+
+
+def test_a_stroke_that_is_right_is_accepted(addon, doubted):
+    gp = addon("blender.grease_pencil")
+    for _ in range(2):
+        bpy.ops.rototoon.next_doubt()
+    assert bpy.context.scene.frame_current == 5
+    assert bpy.ops.rototoon.accept_doubt() == {"FINISHED"}
+    assert said(addon).text == "Stroke 1 is accepted on frame 5. 1 stroke still in doubt"
+    assert listed(addon) == ["Stroke 2: doubtful on 3 and 5"] and kinds(addon, doubted, "Lines")[5] == gp.GENERATED
+    assert [mark.lost for mark in addon("ui.doubts").marked(doubted, 5)] == [False]
+    bpy.ops.rototoon.next_doubt()
+    assert bpy.ops.rototoon.accept_doubt() == {"FINISHED"}
+    assert said(addon).text == "Stroke 2 is accepted on frame 5, and the drawing is yours now. 1 stroke still in doubt"
+    assert kinds(addon, doubted, "Lines")[5] == gp.KEYFRAME and listed(addon) == ["Stroke 2: doubtful on 3"]
+    before = ls.strokes(addon, doubted, "Lines", 5)
+    assert bpy.ops.rototoon.trace_drawing() == {"FINISHED"}
+    after = ls.strokes(addon, doubted, "Lines", 5)
+    assert list(after) == list(before) and all(np.array_equal(after[number], before[number]) for number in before)
+    assert not any(" 5" in each for each in listed(addon)), "it stays accepted"
+
+
+def test_all_strokes_of_a_frame_are_accepted_at_once_and_undone(addon, doubted):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.context.scene.frame_set(5)
+    with pytest.raises(RuntimeError, match="2 strokes are in doubt on this frame: press Next Doubtful Stroke"):
+        bpy.ops.rototoon.accept_doubt()
+    assert bpy.ops.rototoon.accept_doubt("EXEC_DEFAULT", True, every=True) == {"FINISHED"}
+    assert said(addon).text == "2 strokes are accepted on frame 5, and the drawing is yours now. 1 stroke still in doubt"
+    assert listed(addon) == ["Stroke 2: doubtful on 3"]
+    bpy.ops.ed.undo()
+    assert listed(addon) == DOUBTS
+
+
+def test_the_only_doubtful_stroke_of_a_frame_is_meant(addon, doubted):
+    bpy.context.scene.frame_set(3)
+    assert bpy.ops.rototoon.accept_doubt() == {"FINISHED"}
+    assert listed(addon) == ["Stroke 1: lost on 5", "Stroke 2: doubtful on 5"]
+    bpy.context.scene.frame_set(2)
+    with pytest.raises(RuntimeError, match="No stroke is in doubt on this frame"):
+        bpy.ops.rototoon.accept_doubt()
+
+
+@pytest.mark.parametrize("how", ["lock", "hide"])
+def test_strokes_on_closed_layers_are_not_accepted(addon, doubted, how):
+    setattr(doubted.data.layers["Lines"], how, True)
+    bpy.context.scene.frame_set(3)
+    for every in (False, True):
+        with pytest.raises(RuntimeError, match='the layer "Lines" is'):
+            bpy.ops.rototoon.accept_doubt(every=every)
+    assert listed(addon) == DOUBTS
+
+
+def test_scripts_accept_strokes(addon, doubted):
+    scripting = addon("scripting")
+    assert scripting.accept_lines(doubted, 5, [1]) == (1,)
+    assert listed(addon) == ["Stroke 2: doubtful on 3 and 5"]
+    assert scripting.accept_lines(doubted, 3) == (2,) and scripting.accept_lines(doubted, 3) == ()
+    with pytest.raises(RuntimeError, match='numbers: stroke 1 is not in doubt on frame 5 of the layer "Lines"'):
+        scripting.accept_lines(doubted, 5, [1, 2])
+    assert listed(addon) == ["Stroke 2: doubtful on 5"]

@@ -81,3 +81,13 @@ def test_drawings_outside_of_the_frames_are_not_looked_at(addon, own, tmp_path):
     draw_anew(tmp_path)
     assert addon("scripting").trace_drawing(own, (5, 6)).off == ()
     assert addon("scripting").trace_drawing(own, (2, 4)).off == (3,)
+
+
+def test_a_stroke_beside_the_picture_that_is_right_is_accepted(addon, own, tmp_path):
+    draw_anew(tmp_path)
+    bpy.ops.rototoon.trace_drawing()
+    before = int(marks(addon, own).sum())
+    bpy.context.scene.frame_set(2)
+    bpy.ops.rototoon.next_doubt()
+    assert bpy.ops.rototoon.accept_doubt() == {"FINISHED"}
+    assert marks(addon, own).sum() == before - 1 and kinds(addon, own, "Lines")[3] == "KEYFRAME"

@@ -46,9 +46,9 @@ class ROTOTOON_OT_next_doubt(Guarded, OnDrawing, bpy.types.Operator):
         others = len({(each.layer, each.number) for each in found}) - 1
         more = f". {others} more in doubt" if others else ""
         if place.off:
-            return f"Stroke {place.number} lies on no line of the picture on frame {place.frame}: draw it again there, and press Trace Drawing{more}"
+            return f"Stroke {place.number} lies on no line of the picture on frame {place.frame}: draw it again there, and press Trace Drawing; if it is right, press Accept Stroke{more}"
         verdict = "is probably another stroke" if place.lost else "may be another stroke"
-        return f"Stroke {place.number} {verdict} on frame {place.frame}: mend it with Match Lines, or redraw it and press Carry Strokes{more}"
+        return f"Stroke {place.number} {verdict} on frame {place.frame}: mend it with Match Lines, or redraw it and press Carry Strokes; if it is right, press Accept Stroke{more}"
 
 
 CLASSES = (ROTOTOON_OT_next_doubt,)
