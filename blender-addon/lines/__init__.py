@@ -19,6 +19,7 @@ the artist's and are never written; their strokes are followed.
 `off_ink`             drawings of the artist whose picture was drawn anew
 `explained`           new strokes on lines that another group of layers follows
 `doubts`              which traced strokes are in doubt, and where
+`aside`               hidden lines of traced drawings, on a layer of their own
 `accepting`           doubtful strokes that the artist finds right
 `spreading`           an edit of one drawing, done on all frames
 `rototoon_changes`    traced strokes that Rototoon itself fits or cuts

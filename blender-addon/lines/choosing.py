@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ..blender import grease_pencil as gp
 from ..blender import guard
 from ..blender.errors import Problem
+from . import aside
 from . import drawings as dr
 
 
@@ -34,9 +35,10 @@ def to_trace(ob) -> Chosen:
 def to_carry(ob, active: bool, new: bool) -> Chosen:
     """What Carry Strokes takes: the active layer, or all. On the layer of Trace Drawing new strokes are always drawn. Raises a `Problem` if
     there is no layer, or all of them are closed."""
-    wanted = dr.layers(ob, active)
+    # Hidden lines of another layer are carried with it.
+    wanted = [layer for layer in dr.layers(ob, active) if not aside.is_aside(ob, layer)]
     if not wanted:
-        what = "The active layer has contours, snapped lines or paint: make" if active else "There are no drawings to carry: draw on"
+        what = "The active layer has contours, snapped or hidden lines, or paint: make" if active else "There are no drawings to carry: draw on"
         raise Problem(f"{what} another layer active" if active else f"{what} a layer of your own")
     guard.need_some(wanted)
     names = [layer.name for layer in guard.open_layers(wanted)]
@@ -55,8 +57,8 @@ def to_carry_named(ob, names: Sequence[str], new: bool) -> Chosen:
             raise Problem(f'"{ob.name}" has no layer "{name}"')
         if guard.as_contours(ob, name):
             raise Problem(f'The layer "{name}" has contours: track them')
-        if not dr.may_have_lines(ob, layer):
-            raise Problem(f'The layer "{name}" has snapped lines or paint: carry another one')
+        if not dr.may_have_lines(ob, layer) or aside.is_aside(ob, layer):
+            raise Problem(f'The layer "{name}" has snapped or hidden lines, or paint: carry another one')
     guard.need_open(gp.find_layer(ob, name) for name in names)
     return _carried(ob, names, names[-1], new)
 

@@ -20,7 +20,7 @@ from ..blender import strokes as st
 from ..blender.errors import Problem
 from ..common import jobs
 from . import drawings as dr
-from . import explained, looks, moved, numbers, off_ink, records
+from . import aside, explained, looks, moved, numbers, off_ink, records
 from . import plan as pl
 
 make: Callable[[dict[str, Any], str], Any] = Session.from_document
@@ -156,6 +156,7 @@ def finishing(ob, plan: pl.Plan, found: list[Traced], home: str, beside: Sequenc
             yield from _mark_off(ob, layer, group, k, plan, done)
             placed = _placed(group, layer, k, traced, keyed, plan, left_out)
             yield from write(ob, layer, group.mapper, k, placed, _looks_of(group, k, keyed), record, done)
+            aside.clear(ob, layer.name, placed)
     records.write(ob.data, kept)
     ob.data.update_tag()
     return done

@@ -53,11 +53,11 @@ def test_layers_that_the_operator_leaves_alone_are_refused(addon, traced):
     scripting, settings = addon("scripting"), traced.rototoon
     red(addon, traced)
     settings.snapped_layer = "Red"
-    with pytest.raises(RuntimeError, match='"Red" has snapped lines or paint'):
+    with pytest.raises(RuntimeError, match='"Red" has snapped or hidden lines, or paint'):
         scripting.carry_strokes(traced, ["Red"])
     settings.snapped_layer = "Snapped"
     scripting.fill_region(traced, 1, ls.lines(0)[0][0].mean(0).tolist(), (1.0, 0.5, 0.2))
-    with pytest.raises(RuntimeError, match=f'"{settings.fills_layer}" has snapped lines or paint'):
+    with pytest.raises(RuntimeError, match=f'"{settings.fills_layer}" has snapped or hidden lines, or paint'):
         scripting.carry_strokes(traced, [settings.fills_layer])
     traced.data.layers["Red"].hide = True
     with pytest.raises(RuntimeError, match='the layer "Red" is hidden'):

@@ -6,8 +6,8 @@ from ...blender import grease_pencil as gp
 from ...blender import guard, holds, memo
 from ...common.operators import Guarded, OnDrawing
 from ...common.wording import counted, joined, stayed
+from .. import aside, records
 from .. import drawings as dr
-from .. import records
 
 
 class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
@@ -27,12 +27,13 @@ class ROTOTOON_OT_clear_lines(Guarded, OnDrawing, bpy.types.Operator):
 
     def run(self, context) -> str:
         ob = context.object
-        wanted = [layer for layer in dr.layers(ob) if dr.is_lines(layer)]
+        wanted = [layer for layer in dr.layers(ob) if dr.is_lines(layer) and not aside.is_aside(ob, layer)]
         guard.need_some(wanted)
         self.warn(guard.left_out(wanted))
         kept, removed, edited = records.read(ob.data), 0, set()
         for found in dr.read(ob, [layer.name for layer in guard.open_layers(wanted)]):
             dr.keep(ob, found)
+            aside.clear(ob, found.name, found.made)
             gp.remove_frames(gp.find_layer(ob, found.name), sorted(found.made))
             removed += len(found.made)
             edited |= found.edited

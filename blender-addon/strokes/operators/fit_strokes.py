@@ -133,7 +133,7 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
     def finish(self, context, work) -> str:
         guard.need_open(gp.find_layer(self._ob, name) for name in sorted({name for name, *_ in self._done}))
         self._seen.need((name, number) for name, number, _ in self._done)
-        with rototoon_changes.kept(self._ob) as made:
+        with traced_changes.kept(self._ob) as traced, rototoon_changes.kept(self._ob) as made:
             for name, number, fitted in self._done:
                 st.write(gp.drawings(gp.find_layer(self._ob, name))[number][0], fitted.content)
         marks.remember(self._ob.data)
@@ -147,9 +147,10 @@ class ROTOTOON_OT_fit_strokes(Long, OnDrawing, bpy.types.Operator):
         self.warn(weights.warning(self._ob))
         before, after = (sum(getattr(f, side) for *_, f in self._done) for side in ("before", "after"))
         skipped = sum(fitted.skipped for *_, fitted in self._done)
-        lighter = {layer: {number for name, number, fitted in self._done if name == layer and fitted.fitted} for layer in made.frames}
+        layers = {name for name, *_ in self._done}
+        lighter = {layer: {number for name, number, fitted in self._done if name == layer and fitted.fitted} for layer in layers}
         said = f"{counted(strokes, 'stroke')} fitted: {before} points became {after}"
-        return joined(said, f"{skipped} not changed" if skipped else "", made.said(lighter))
+        return joined(said, f"{skipped} not changed" if skipped else "", made.said(lighter), traced.said(lighter))
 
 
 CLASSES = (ROTOTOON_OT_fit_strokes,)

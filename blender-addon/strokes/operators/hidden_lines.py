@@ -110,7 +110,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         hidden.need_unchanged(self._ob, self._cuts, self._seen)
         own = hidden.own(self._ob, self._cuts, self.frames == "CURRENT")
         gone = hidden.gone(self._cuts, self.frames == "CURRENT")
-        with traced_changes.removed(self._ob, gone), rototoon_changes.kept(self._ob) as made:
+        with traced_changes.kept(self._ob, gone) as traced, rototoon_changes.kept(self._ob) as made:
             drawings, parts = hidden.write(self._ob, self._cuts, self.action == "MOVE", self.frames == "CURRENT", self._after)
         marks.remember(self._ob.data)
         self._ob.data.update_tag()
@@ -119,7 +119,7 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         if not drawings:
             return "Nothing is hidden"
         self.warn(weights.warning(self._ob))
-        return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made))
+        return joined(f"{counted(parts, 'hidden line')} on {counted(drawings, 'drawing')}", self._said(own, made), traced.said(self._cut_frames()))
 
     def _through(self) -> str:
         """Which layers have fills that hide nothing; empty if none has."""
@@ -136,10 +136,17 @@ class ROTOTOON_OT_hidden_lines(Long, OnDrawing, bpy.types.Operator):
         lines = "1 hidden line is a curve" if count == 1 else f"{count} hidden lines are curves"
         return f"not cut: {lines} of a kind that cannot be cut; give it the type Poly in Edit Mode (Set Curve Type), then Fit Strokes makes a curve that can"
 
+    def _cut_frames(self) -> dict[str, set[int]]:
+        """The frames of the drawings that were cut, by layer."""
+        found: dict[str, set[int]] = {}
+        for each in self._cuts:
+            if each.changed:
+                found.setdefault(each.layer, set()).add(each.source)
+        return found
+
     def _said(self, own: dict[str, set[int]], made: rototoon_changes.Kept) -> str:
         """Which of the cut drawings are the artist's, and what that means for in-betweens."""
-        cut = {layer: {each.source for each in self._cuts if each.changed and each.layer == layer} for layer in made.frames}
-        between, mine = made.among(cut), sum(map(len, own.values()))
+        between, mine = made.among(self._cut_frames()), sum(map(len, own.values()))
         frames = sorted(set().union(*own.values()))
         on = f"on frame{'' if len(frames) == 1 else 's'} {listed(frames)}" if frames else ""
         if mine and own.keys() & made.frames.keys():
