@@ -29,7 +29,7 @@ PAGES = (
     ("bpy.ops.rototoon.trace_*", "artist/lines.html"),
     ("bpy.ops.rototoon.carry_strokes*", "artist/lines.html"),
     ("bpy.ops.rototoon.match_lines*", "artist/lines.html"),
-    ("bpy.ops.rototoon.accept_doubt*", "artist/lines.html#strokes-in-doubt"),
+    ("bpy.ops.rototoon.accept_doubt*", "artist/lines.html"),
     ("bpy.ops.rototoon.clear_lines*", "artist/lines.html"),
     ("bpy.ops.rototoon.spread_edits*", "artist/lines.html"),
     ("bpy.ops.rototoon.make_part*", "artist/lines.html"),
