@@ -246,7 +246,7 @@ def _traced_and_doubted(addon, ob):
 
 def _traced_and_doubted_here(addon, ob):
     _traced_and_doubted(addon, ob)
-    bpy.context.scene.frame_set(3)
+    bpy.ops.rototoon.next_doubt()
 
 
 def _traced_and_moved(addon, ob):

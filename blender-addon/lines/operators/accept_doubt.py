@@ -20,7 +20,7 @@ class ROTOTOON_OT_accept_doubt(Guarded, OnDrawing, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    every: bpy.props.BoolProperty(name="All on This Frame", description="Accept all doubtful strokes of this frame", default=False)
+    every: bpy.props.BoolProperty(name="All on This Frame", description="Accept all doubtful strokes of this frame", default=False, options={"SKIP_SAVE"})
 
     @classmethod
     def lacking(cls, ob, changes: str) -> str:
