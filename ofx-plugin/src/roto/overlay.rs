@@ -139,11 +139,18 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         return Ok(());
     }
     // The editor is free again before the host is called.
-    let outcome = {
+    let (unfinished, outcome) = {
         let mut editor = instance.editor();
-        happen(view, &shown, frame, &mut editor)
+        let unfinished = if view.event == Event::Move { None } else { editor.unfinished() };
+        (unfinished, happen(view, &shown, frame, &mut editor))
     };
+    let edits = matches!(outcome, Outcome::Edited(_));
     let result = keep(view, &shown, outcome);
+    if edits && let Err(Failure::Told(text)) = &result {
+        // The edit is not made, so the contour is as unfinished as before.
+        instance.editor().restore(unfinished);
+        view.effect.complain(text);
+    }
     if result != Err(Failure::Default) {
         view.redraw();
     }

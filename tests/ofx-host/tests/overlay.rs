@@ -17,6 +17,7 @@ const FREEHAND: f64 = 2.0;
 const OFF: f64 = 3.0;
 const DELETE: i32 = 0xffff;
 const ENTER: i32 = 0xff0d;
+const BACK: i32 = 0xff08;
 
 fn shown(p: Point) -> [f64; 2] {
     [p.x, HEIGHT as f64 - p.y]
@@ -192,6 +193,37 @@ fn a_composition_without_a_document_is_drawn_on() {
     effect.undo();
     effect.undo();
     assert_eq!(effect.text("document"), "");
+}
+
+#[test]
+fn a_contour_that_is_refused_stays_until_it_can_be_finished() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set("tool", &[CONTOUR]);
+    effect.set_text("part", "ground line");
+    let corners = [(10.0, 10.0), (40.0, 12.0), (25.0, 40.0), (10.0, 10.0)].map(|(x, y)| Point::new(x, y));
+    for at in corners {
+        assert_eq!(effect.overlay(DOWN, true, 3.0, shown(at), 0.2), OK);
+    }
+    let told = host.messages();
+    assert!(
+        told.iter().any(|text| text.contains("is open") && text.contains("press New part; then press Return")),
+        "{told:?}"
+    );
+    assert_eq!(effect.press_at("newPart", 3.0), OK);
+    assert_eq!(effect.overlay_key(KEY, 3.0, ENTER), OK);
+    assert_eq!(kept(&effect).scene.parts[3].keys[&3], corners[..3]);
+    // A point that no document can have is told when the contour is stored. The others are not lost.
+    for at in [corners[0], corners[1], Point::new(1e12, 3.0)] {
+        assert_eq!(effect.overlay(DOWN, true, 4.0, shown(at), 0.2), OK);
+    }
+    assert_eq!(effect.overlay_key(KEY, 4.0, ENTER), "kOfxStatFailed");
+    let told = host.messages();
+    assert!(told.iter().any(|text| text.contains("found [1000000000000")), "{told:?}");
+    effect.overlay_key(KEY, 4.0, BACK);
+    assert_eq!(effect.overlay(DOWN, true, 4.0, shown(corners[2]), 0.2), OK);
+    assert_eq!(effect.overlay_key(KEY, 4.0, ENTER), OK, "{:?}", host.messages());
+    assert_eq!(kept(&effect).scene.parts[4].keys[&4], corners[..3]);
 }
 
 /// Places of the handles around the selection: first that which rotates, then from the upper left corner clockwise.

@@ -39,8 +39,10 @@ pub fn draw(
         let part = &mut parts[index];
         if part.closed != closed {
             let (is, drawn) = if closed { ("open", "closed") } else { ("closed", "open") };
-            let text = format!("{name:?} is {is}, but the contour is {drawn}: set Closed, or press New part first");
-            return Err(Refused::new(text));
+            let switch = if closed { "off" } else { "on" };
+            return Err(Refused::new(format!(
+                "{name:?} is {is}, but the contour is {drawn}: switch Closed {switch}, or press New part; then press Return"
+            )));
         }
         let shape = key_of(part, frame, points, set);
         make_key(part, frame, shape);

@@ -8,6 +8,8 @@
 //! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
 //! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
 //! contour is drawn in one stroke. Only with *Select* do Delete and Backspace delete what is selected.
+//!
+//! A contour that is refused stays unfinished: Return finishes it when what the message asks for is done.
 
 use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
@@ -155,6 +157,16 @@ impl Editor {
     /// The contour that is being drawn on a frame.
     pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
         self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
+    }
+
+    /// The unfinished contour, which [`Self::restore`] takes back where its edit cannot be stored.
+    pub fn unfinished(&self) -> Option<Sketch> {
+        self.sketch.clone()
+    }
+
+    /// Takes an unfinished contour back.
+    pub fn restore(&mut self, sketch: Option<Sketch>) {
+        self.sketch = sketch;
     }
 
     /// The corners of the box that selects.
@@ -328,7 +340,7 @@ impl Editor {
             sketch.points.len() > 1 && near(sketch.points.last())
         };
         if ends {
-            return self.finish(work, sketch.points);
+            return self.finish(work, sketch);
         }
         // A double click sets one point.
         if !near(sketch.points.last()) || sketch.points.is_empty() {
@@ -339,14 +351,22 @@ impl Editor {
         Outcome::Shown
     }
 
-    fn finish(&mut self, work: &Work, points: Vec<Point>) -> Outcome {
+    fn finish(&mut self, work: &Work, sketch: Sketch) -> Outcome {
+        let set = work.tool != Tool::Freehand;
+        let points =
+            if set { sketch.points.clone() } else { contour::simplified(&sketch.points, work.closed, &work.lens) };
         let mut document = work.document.clone();
-        match contour::draw(&mut document, work.frame, work.name, points, work.closed, work.tool != Tool::Freehand) {
+        match contour::draw(&mut document, work.frame, work.name, points, work.closed, set) {
             Ok(part) => {
                 self.select(Selection::part(part, &document.scene), &document.scene);
                 Outcome::Edited(Edit { label: "Draw contour", document })
             }
-            Err(refused) => Outcome::Refused(refused),
+            Err(refused) => {
+                // A click with the freehand tool is no stroke that could be finished.
+                let long = |at: &Point| work.lens.distance(*at, sketch.points[0]) > CLICK;
+                self.sketch = (set || sketch.points.iter().any(long)).then_some(sketch);
+                Outcome::Refused(refused)
+            }
         }
     }
 
@@ -386,10 +406,10 @@ impl Editor {
             return Outcome::Shown;
         }
         match grip {
-            Grip::Stroke => {
-                let stroke = self.sketch.take().map(|sketch| sketch.points).unwrap_or_default();
-                self.finish(work, contour::simplified(&stroke, work.closed, &work.lens))
-            }
+            Grip::Stroke => match self.sketch.take() {
+                Some(stroke) => self.finish(work, stroke),
+                None => Outcome::Shown,
+            },
             Grip::Box if moved => self.select_box(work, corners),
             Grip::Box => self.select_inside(work, pen),
             Grip::Points | Grip::Feather(_) if !moved => self.selected(work),
@@ -439,7 +459,7 @@ impl Editor {
                     return Outcome::Refused(refused);
                 }
                 if let Some(sketch) = self.sketch.take_if(|sketch| sketch.frame == work.frame) {
-                    return self.finish(work, sketch.points);
+                    return self.finish(work, sketch);
                 }
             }
             Key::Back if self.sketch.is_some() => {
