@@ -45,6 +45,7 @@ pub mod footage;
 pub mod fresh;
 pub mod id_files;
 pub mod instance;
+pub mod interpolation;
 pub mod job;
 pub mod listing;
 pub mod marks;

@@ -100,6 +100,29 @@ fn settings_of_parts_are_animated_by_the_hosts_keys() {
 }
 
 #[test]
+fn a_value_that_the_host_holds_between_keys_is_held_when_its_part_is_selected_again() {
+    let host = host();
+    let mut effect = node(&host, FILTER);
+    effect.set_text("part", "right");
+    for (id, first, last) in [("partOpacity", 1.0, 0.0), ("partGrow", 0.0, 0.25), ("partOn", 1.0, 0.0)] {
+        effect.set_at(id, 0.0, &[first]);
+        effect.set_at(id, 10.0, &[last]);
+        effect.hold_keys(id);
+    }
+    let shown = |effect: &Effect| {
+        ["partOpacity", "partGrow", "partOn"].map(|id| [0.0, 3.0, 9.0, 10.0, 12.0].map(|time| effect.get(id, time)[0]))
+    };
+    let held = shown(&effect);
+    assert_eq!(held[0], [1.0, 1.0, 1.0, 0.0, 0.0]);
+    for _ in 0..3 {
+        effect.set_text("part", "left");
+        effect.set_text("part", "right");
+        assert_eq!((shown(&effect), effect.keys("partOpacity").len()), (held, 3));
+    }
+    clean(&host);
+}
+
+#[test]
 fn the_mode_of_a_part_has_keys_where_the_host_has_them_for_choices() {
     let mut host = host();
     for (choice_keys, said) in [(true, "1"), (false, "0")] {
