@@ -2,6 +2,7 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
+use super::reach::Reach;
 use super::state::{FileMark, State};
 use super::track::BUSY;
 use super::{choosing, edits, footage, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
@@ -160,6 +161,7 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
         Some(document) => Document::clone(&document),
         None => fresh::document(effect)?,
     };
+    Reach::of(effect)?.widen_own(&mut document.scene.footage);
     // The file has the composition's frames.
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let format = ShapeFormat::of(extension, document.scene.footage.first);

@@ -3,6 +3,7 @@
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::job::Tracked;
 use super::parts::{meant, selected};
+use super::reach::Reach;
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
@@ -178,6 +179,8 @@ struct Bench {
     chosen: Option<usize>,
     /// The number in Place.
     place: usize,
+    /// The frames of the source.
+    reach: Reach,
 }
 
 impl Bench {
@@ -203,7 +206,7 @@ impl Bench {
             return Err(Failure::Told(Refused::protected(&document.scene.parts[part].name).0));
         }
         let place = usize::try_from(parameters.int(c"place", time)?).unwrap_or(1);
-        Ok(Self { document, frame, parts, chosen, place })
+        Ok(Self { document, frame, parts, chosen, place, reach: Reach::of(effect)? })
     }
 
     fn work(&self) -> Work<'_> {
@@ -215,6 +218,7 @@ impl Bench {
             tool: super::edit::Tool::Select,
             closed: true,
             name: "",
+            reach: self.reach,
         }
     }
 
@@ -292,7 +296,7 @@ fn refused(text: &str) -> Outcome {
 
 /// The buttons that change whole parts.
 fn on_parts(bench: &Bench, name: &str) -> Outcome {
-    let mut document = Document::clone(&bench.document);
+    let mut document = bench.work().draft();
     let frame = bench.frame;
     let part = bench.chosen.map_or_else(String::new, |part| format!("{:?}", document.scene.parts[part].name));
     let (label, nothing, done) = match name {

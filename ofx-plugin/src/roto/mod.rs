@@ -61,6 +61,7 @@ pub mod parts;
 pub mod pen;
 pub mod picture;
 pub mod placement;
+pub mod reach;
 pub mod regions;
 pub mod render;
 pub mod saving;

@@ -7,6 +7,7 @@
 use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work, order};
 use super::parts::{meant, selected};
 use super::placement::Placement;
+use super::reach::Reach;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
 use super::stale::Stale;
@@ -43,6 +44,7 @@ pub struct Shown {
     closed: bool,
     /// Name of the selected part.
     pub name: String,
+    reach: Reach,
 }
 
 impl Shown {
@@ -67,8 +69,22 @@ impl Shown {
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
         let (name, stale) = (meant(&document.scene.parts, &name).into(), instance.stale());
-        let colours = settings::colours(&parameters, &state)?;
-        Ok(Self { document, parts, unlocked, settings, state, stale, colours, placement, lens, tool, closed, name })
+        let (colours, reach) = (settings::colours(&parameters, &state)?, Reach::of(&view.effect)?);
+        Ok(Self {
+            document,
+            parts,
+            unlocked,
+            settings,
+            state,
+            stale,
+            colours,
+            placement,
+            lens,
+            tool,
+            closed,
+            name,
+            reach,
+        })
     }
 
     /// The colour of a part.
@@ -99,6 +115,7 @@ impl Shown {
             tool: self.tool,
             closed: self.closed,
             name: &self.name,
+            reach: self.reach,
         }
     }
 }

@@ -4,6 +4,7 @@ use super::instance::NO_SHAPES;
 use super::motion::Motion;
 use super::parts::meant;
 use super::placement::Placement;
+use super::reach::Reach;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
 use super::state::State;
@@ -77,6 +78,7 @@ pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
 fn dressed(effect: &Effect, document: &Document, time: f64) -> Result<Document, Failure> {
     let (parameters, mut document) = (effect.parameters()?, document.clone());
     let state = instance(effect)?.state(&parameters)?;
+    Reach::of(effect)?.widen_own(&mut document.scene.footage);
     let (settings, colours) = (Settings::read(&parameters, time, &state)?, settings::colours(&parameters, &state)?);
     for part in &mut document.scene.parts {
         part.falloff = settings.look(&part.name).falloff.within(part.falloff).within(settings.falloff);
@@ -96,7 +98,11 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
     if extension == "exr" {
-        return id_files::write(effect, &document, &path.to_string_lossy(), offset);
+        id_files::write(effect, &document, &path.to_string_lossy(), offset)?;
+        if let Some(left_out) = id_files::left_out(&document.scene, offset) {
+            instance(effect)?.note(effect, &left_out, false);
+        }
+        return Ok(());
     }
     numbering::shift(&mut document.scene, offset);
     let options = ShapeOptions { detail: Detail::Spacing(SPACING), pixel_aspect: effect.clip(OUTPUT)?.pixel_aspect() };

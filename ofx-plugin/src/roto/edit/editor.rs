@@ -13,6 +13,7 @@
 
 use super::handles::{Handle, Handles, Transform};
 use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
+use crate::roto::reach::Reach;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
@@ -69,9 +70,18 @@ pub struct Work<'a> {
     pub closed: bool,
     /// Name of the part that is drawn; empty for a new one.
     pub name: &'a str,
+    /// The frames of the source.
+    pub reach: Reach,
 }
 
 impl Work<'_> {
+    /// The document for an edit on the frame, which the footage has where the source has it.
+    pub fn draft(&self) -> Document {
+        let mut document = self.document.clone();
+        self.reach.widen(&mut document.scene.footage, self.frame);
+        document
+    }
+
     /// Why nothing can be drawn: the part that is named must not be changed.
     fn refusal(&self) -> Option<Refused> {
         let named = self.document.scene.parts.iter().position(|part| part.name == self.name);
@@ -314,7 +324,7 @@ impl Editor {
     }
 
     fn insert_at(&mut self, work: &Work, place: hit::OnContour) -> Outcome {
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match points::insert(&mut document, place.part, &[(place.segment, place.share)].into()) {
             Ok(new) => {
                 self.selection = Selection::of(new.into_iter().map(|point| Place { part: place.part, point }));
@@ -355,7 +365,7 @@ impl Editor {
         let set = work.tool != Tool::Freehand;
         let points =
             if set { sketch.points.clone() } else { contour::simplified(&sketch.points, work.closed, &work.lens) };
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match contour::draw(&mut document, work.frame, work.name, points, work.closed, set) {
             Ok(part) => {
                 self.select(Selection::part(part, &document.scene), &document.scene);
@@ -431,7 +441,7 @@ impl Editor {
         let complete = |part: &usize| self.selection.of_part(*part).len() == scene.parts[*part].point_count();
         let whole: BTreeSet<usize> = self.selection.parts().into_iter().filter(complete).collect();
         let whole = if transform.is_shift() { whole } else { BTreeSet::new() };
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match change::move_points(&mut document, work.frame, &moved, &whole) {
             Ok(true) => Outcome::Edited(Edit { label, document }),
             Ok(false) => Outcome::Shown,

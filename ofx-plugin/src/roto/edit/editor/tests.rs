@@ -34,7 +34,16 @@ fn document() -> Document {
 
 fn work(document: &Document) -> Work<'_> {
     let lens = Lens::new(p(1.0, 1.0));
-    Work { document, frame: FRAME, parts: &[0, 1], lens, tool: Tool::Select, closed: true, name: "" }
+    Work {
+        document,
+        frame: FRAME,
+        parts: &[0, 1],
+        lens,
+        tool: Tool::Select,
+        closed: true,
+        name: "",
+        reach: Reach::default(),
+    }
 }
 
 fn drag(editor: &mut Editor, work: &Work, from: Point, to: Point) -> Outcome {
