@@ -12,7 +12,7 @@
 //! A contour that is refused stays unfinished: Return finishes it when what the message asks for is done.
 
 use super::handles::{Handle, Handles, Transform};
-use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
+use super::{Lens, Place, Refused, Selection, change, feather, hit, points};
 use crate::roto::reach::Reach;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -167,16 +167,6 @@ impl Editor {
     /// The contour that is being drawn on a frame.
     pub fn sketch(&self, frame: FrameNumber) -> Option<&Sketch> {
         self.sketch.as_ref().filter(|sketch| sketch.frame == frame)
-    }
-
-    /// The unfinished contour, which [`Self::restore`] takes back where its edit cannot be stored.
-    pub fn unfinished(&self) -> Option<Sketch> {
-        self.sketch.clone()
-    }
-
-    /// Takes an unfinished contour back.
-    pub fn restore(&mut self, sketch: Option<Sketch>) {
-        self.sketch = sketch;
     }
 
     /// The corners of the box that selects.
@@ -340,46 +330,6 @@ impl Editor {
         Outcome::Selected(only.map(|&part| work.document.scene.parts[part].name.clone()))
     }
 
-    fn set_point(&mut self, work: &Work, pen: Point) -> Outcome {
-        let sketch = self.sketch.take().filter(|sketch| sketch.frame == work.frame);
-        let mut sketch = sketch.unwrap_or(Sketch { frame: work.frame, points: Vec::new(), pen });
-        let near = |at: Option<&Point>| at.is_some_and(|at| work.lens.distance(*at, pen) <= hit::NEAR_POINT);
-        let ends = if work.closed {
-            sketch.points.len() > 2 && near(sketch.points.first())
-        } else {
-            sketch.points.len() > 1 && near(sketch.points.last())
-        };
-        if ends {
-            return self.finish(work, sketch);
-        }
-        // A double click sets one point.
-        if !near(sketch.points.last()) || sketch.points.is_empty() {
-            sketch.points.push(pen);
-        }
-        sketch.pen = pen;
-        self.sketch = Some(sketch);
-        Outcome::Shown
-    }
-
-    fn finish(&mut self, work: &Work, sketch: Sketch) -> Outcome {
-        let set = work.tool != Tool::Freehand;
-        let points =
-            if set { sketch.points.clone() } else { contour::simplified(&sketch.points, work.closed, &work.lens) };
-        let mut document = work.draft();
-        match contour::draw(&mut document, work.frame, work.name, points, work.closed, set) {
-            Ok(part) => {
-                self.select(Selection::part(part, &document.scene), &document.scene);
-                Outcome::Edited(Edit { label: "Draw contour", document })
-            }
-            Err(refused) => {
-                // A click with the freehand tool is no stroke that could be finished.
-                let long = |at: &Point| work.lens.distance(*at, sketch.points[0]) > CLICK;
-                self.sketch = (set || sketch.points.iter().any(long)).then_some(sketch);
-                Outcome::Refused(refused)
-            }
-        }
-    }
-
     /// The pen moves.
     pub fn move_to(&mut self, work: &Work, pen: Point) -> Outcome {
         if let Some(drag) = &mut self.drag {
@@ -496,5 +446,6 @@ impl Editor {
 
 mod on_selection;
 mod selecting;
+mod sketching;
 #[cfg(test)]
 mod tests;
