@@ -11,7 +11,6 @@ use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::pipeline::unchanged::Mark;
 use rototoon::project::Document;
 use rototoon::scene::Part;
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -24,6 +23,13 @@ pub const NO_SHAPES: &str = "found no shapes: draw some, or load a project first
 /// Most different messages until the user changes something.
 const MOST_NOTES: usize = 20;
 
+/// A message about the picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Note {
+    text: String,
+    error: bool,
+}
+
 /// A stored state: its text, and what it says or why it could not be read.
 type ReadState = (String, Result<Arc<State>, String>);
 
@@ -31,7 +37,7 @@ type ReadState = (String, Result<Arc<State>, String>);
 #[derive(Debug, Default)]
 pub struct Instance {
     read: Mutex<Option<Read>>,
-    told: Mutex<BTreeSet<String>>,
+    told: Mutex<Vec<Note>>,
     state: Mutex<Option<ReadState>>,
     editor: Mutex<Editor>,
     film: Mutex<Option<Arc<Film>>>,
@@ -117,14 +123,26 @@ impl Instance {
         *lock(&self.read) = None;
     }
 
-    /// Shows the user a message about the picture, once until the user changes something.
+    /// Shows the user a message about the picture, beside those that stand already, until the user changes something.
     pub fn note(&self, effect: &Effect, text: &str, error: bool) {
-        let new = {
+        let mut told = {
             let mut told = lock(&self.told);
-            told.len() < MOST_NOTES && told.insert(text.to_owned())
+            if told.len() >= MOST_NOTES || told.iter().any(|note| note.text == text) {
+                return;
+            }
+            told.push(Note { text: text.to_owned(), error });
+            told.clone()
         };
-        if new {
-            effect.note(text, error);
+        // A host may draw while it shows a message, so the lock is open. What was noted meanwhile is shown by whoever comes last.
+        loop {
+            let first = told.iter().filter(|note| note.error);
+            let all: Vec<&str> = first.chain(told.iter().filter(|note| !note.error)).map(|note| &*note.text).collect();
+            effect.note(&all.join("; "), text, told.iter().any(|note| note.error));
+            let now = lock(&self.told).clone();
+            if now.len() <= told.len() {
+                break;
+            }
+            told = now;
         }
     }
 
