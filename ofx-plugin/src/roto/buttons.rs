@@ -168,9 +168,15 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
     let format = format.ok_or_else(|| told(&"expected a file of shapes"))?;
     let text = pipeline::shapes_text(path).map_err(|error| told(&error))?;
     let imported = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| told(&error))?;
+    let hidden = edits::hidden_new(effect, &document)?;
     edits::store_imported(effect, document, &path.to_string_lossy())?;
     for warning in imported.warnings.iter().take(MOST_WARNINGS).chain(&imported.told()) {
         instance(effect)?.note(effect, warning, false);
+    }
+    if !hidden.is_empty() {
+        let names: Vec<String> = hidden.iter().map(|name| format!("{name:?}")).collect();
+        let text = format!("Parts names other parts, so these are not shown: {}", names.join(", "));
+        instance(effect)?.note(effect, &text, false);
     }
     Ok(())
 }

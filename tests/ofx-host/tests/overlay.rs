@@ -226,6 +226,29 @@ fn a_contour_that_is_refused_stays_until_it_can_be_finished() {
     assert_eq!(kept(&effect).scene.parts[4].keys[&4], corners[..3]);
 }
 
+#[test]
+fn a_new_part_is_shown_although_parts_names_others() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set("tool", &[CONTOUR]);
+    let corners = [(10.0, 10.0), (40.0, 12.0), (25.0, 40.0), (10.0, 10.0)].map(|(x, y)| Point::new(x, y));
+    for (parts, name, after) in
+        [("star, gr*", "", "star, gr*, part 1"), ("star,", "arm", "star, arm"), ("", "leg", ""), ("l*", "leg 2", "l*")]
+    {
+        effect.set_text("parts", parts);
+        effect.set_text("part", name);
+        for at in corners {
+            assert_eq!(effect.overlay(DOWN, true, 3.0, shown(at), 0.2), OK);
+        }
+        assert_eq!(effect.text("parts"), after);
+        // It can be picked, and it is a step of undo with its name in the list.
+        effect.overlay(DRAW, true, 3.0, [0.0; 2], 0.1);
+        assert!(effect.drawn().iter().any(|(closed, line)| *closed && near(line[0], shown(corners[0]))));
+    }
+    (0..3).for_each(|_| effect.undo());
+    assert_eq!((kept(&effect).scene.parts.len(), host.messages()), (4, Vec::new()));
+}
+
 /// Places of the handles around the selection: first that which rotates, then from the upper left corner clockwise.
 fn handles(effect: &mut Effect, time: f64) -> Vec<Point> {
     assert_eq!(effect.overlay(DRAW, true, time, [0.0; 2], 0.1), OK);
