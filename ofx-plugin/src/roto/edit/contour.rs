@@ -5,7 +5,7 @@
 //! points were set as the part has, they are its points. Another contour becomes a new part in front of all others.
 
 use super::change::{inside_footage, make_key, middle};
-use super::{Lens, Refused};
+use super::{Lens, Refused, naming};
 use rototoon::geometry::{Point, polygon, polyline};
 use rototoon::project::Document;
 use rototoon::render::motion::outline_at;
@@ -48,6 +48,7 @@ pub fn draw(
         make_key(part, frame, shape);
         return Ok(index);
     }
+    naming::check(name, "Part")?;
     let nearest = parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
     let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
     let name = if name.is_empty() { free_name(parts) } else { name.to_owned() };

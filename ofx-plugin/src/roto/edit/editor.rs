@@ -12,7 +12,7 @@
 //! A contour that is refused stays unfinished: Return finishes it when what the message asks for is done.
 
 use super::handles::{Handle, Handles, Transform};
-use super::{Lens, Place, Refused, Selection, change, feather, hit, points};
+use super::{Lens, Place, Refused, Selection, change, feather, hit, naming, points};
 use crate::roto::reach::Reach;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
@@ -82,10 +82,12 @@ impl Work<'_> {
         document
     }
 
-    /// Why nothing can be drawn: the part that is named must not be changed.
+    /// Why nothing can be drawn: the part that is named must not be changed, or no new part may have the name.
     fn refusal(&self) -> Option<Refused> {
-        let named = self.document.scene.parts.iter().position(|part| part.name == self.name);
-        named.filter(|part| !self.parts.contains(part)).map(|_| Refused::protected(self.name))
+        match self.document.scene.parts.iter().position(|part| part.name == self.name) {
+            Some(part) => (!self.parts.contains(&part)).then(|| Refused::protected(self.name)),
+            None => naming::check(self.name, "Part").err(),
+        }
     }
 }
 

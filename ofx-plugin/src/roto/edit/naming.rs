@@ -11,11 +11,7 @@ pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Re
     if name.is_empty() {
         return Err(Refused::new("write the new name in New name first"));
     }
-    if name.contains([',', '*']) {
-        return Err(Refused::new(format!(
-            "New name: found {name:?}, expected a name without \",\" and \"*\", which lists of parts need"
-        )));
-    }
+    check(name, "New name")?;
     if document.scene.parts.iter().any(|part| part.name == name) {
         return Err(Refused::new(format!("a part has the name {name:?} already")));
     }
@@ -23,6 +19,16 @@ pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Re
         return Err(Refused::new(format!("limbs of the project are bound to {old:?}: rename it in Blender")));
     }
     document.scene.parts[part].name = name.to_owned();
+    Ok(())
+}
+
+/// Refuses the name of a new part that lists of parts cannot have. `field` names the parameter with it.
+pub fn check(name: &str, field: &str) -> Result<(), Refused> {
+    if name.contains([',', '*']) {
+        return Err(Refused::new(format!(
+            "{field}: found {name:?}, expected a name without \",\" and \"*\", which lists of parts need"
+        )));
+    }
     Ok(())
 }
 

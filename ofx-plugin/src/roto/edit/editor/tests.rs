@@ -201,6 +201,27 @@ fn a_refused_contour_is_finished_when_the_message_is_followed() {
 }
 
 #[test]
+fn a_new_part_has_a_name_that_lists_can_have() {
+    let mut document = document();
+    document.scene.parts[1].name = "arm, left".into();
+    let (mut editor, mut work) = (Editor::default(), work(&document));
+    for name in ["arm, right", "arm*"] {
+        for tool in [Tool::Contour, Tool::Freehand] {
+            (work.tool, work.name) = (tool, name);
+            let refused = editor.down(&work, p(10.0, 10.0));
+            assert!(matches!(refused, Outcome::Refused(text) if text.0.starts_with("Part: found")), "{name}");
+        }
+    }
+    // A part that the document has is drawn whatever its name. A contour that is begun stays until the name is another one.
+    (work.tool, work.name, work.closed) = (Tool::Contour, "arm, left", false);
+    [p(100.0, 40.0), p(140.0, 40.0)].iter().for_each(|&at| drop(editor.down(&work, at)));
+    work.name = "arm*";
+    assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(_)));
+    work.name = "arm, left";
+    assert_eq!(edited(editor.key(&work, Key::Enter)).scene.parts.len(), 2);
+}
+
+#[test]
 fn a_key_too_many_while_drawing_deletes_nothing() {
     let document = document();
     let (mut editor, mut work) = (Editor::default(), work(&document));
