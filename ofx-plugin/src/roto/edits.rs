@@ -317,7 +317,8 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
     state.rename(&old, new);
     parameters.edit("Rename part", || {
         for list in LISTS {
-            parameters.set_text(list, &naming::in_list(&parameters.text(list)?, &old, new))?;
+            parameters
+                .set_text(list, &naming::in_list(&parameters.text(list)?, &bench.document.scene.parts, &old, new))?;
         }
         parameters.set_text(c"part", new)?;
         put(&parameters, &document, state, &page)
