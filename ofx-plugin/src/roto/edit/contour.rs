@@ -49,7 +49,9 @@ pub fn draw(
         return Ok(index);
     }
     naming::check(name, "Part")?;
-    let nearest = parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
+    // Parts may be nearer on some frames.
+    let depths = parts.iter().flat_map(|part| part.depths.values().chain([&part.depth]));
+    let nearest = depths.copied().fold(f64::NEG_INFINITY, f64::max);
     let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
     let name = if name.is_empty() { free_name(parts) } else { name.to_owned() };
     parts.push(Part { name, closed, depth, keys: [(frame, points)].into(), ..Part::default() });

@@ -201,6 +201,17 @@ fn a_refused_contour_is_finished_when_the_message_is_followed() {
 }
 
 #[test]
+fn a_new_part_lies_in_front_of_parts_that_are_nearer_on_some_frames() {
+    let mut document = document();
+    document.scene.parts[0].depths = [(0, 7.5), (3, -2.0)].into();
+    let mut work = work(&document);
+    (work.tool, work.frame) = (Tool::Contour, 0);
+    let mut editor = Editor::default();
+    [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)].iter().for_each(|&at| drop(editor.down(&work, at)));
+    assert_eq!(edited(editor.key(&work, Key::Enter)).scene.parts[2].depth, 8.0);
+}
+
+#[test]
 fn a_new_part_has_a_name_that_lists_can_have() {
     let mut document = document();
     document.scene.parts[1].name = "arm, left".into();
