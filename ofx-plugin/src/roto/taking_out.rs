@@ -7,7 +7,6 @@ use super::placement::Placement;
 use super::reach::Reach;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
-use super::state::State;
 use super::{id_files, instance, motion, numbering};
 use crate::description::OUTPUT;
 use crate::ofx::{Effect, Failure};
@@ -50,8 +49,7 @@ pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
     if shapes.is_empty() {
         return Err(Failure::Told(format!("{name:?} has no shape: draw or track it first")));
     }
-    let offset = Settings::read(&parameters, time, &State::default())?;
-    let offset = time - offset.document_time;
+    let offset = f64::from(parameters.int(c"frameOffset", time)?);
     let placement = Placement::of(effect, &document.scene.footage, time, [1.0; 2])?;
     let frames: Vec<FrameNumber> = shapes.keys().copied().collect();
     let placed = |points: &Vec<Point>| points.iter().map(|&p| Point::from(placement.shown(p))).collect();

@@ -257,6 +257,9 @@ fn region_and_frames_are_limited() {
     effect.set("limitFrames", &[1.0]);
     let drawn = [1.0, 2.0, 3.0, 4.0].map(|time| shown(&host, &mut effect, time)[10]);
     assert_eq!(drawn, [0.0, 1.0, 1.0, 0.0]);
+    // Hosts sum times as floats.
+    let drawn = [1.9, 1.9999999, 3.0000001, 3.1].map(|time| shown(&host, &mut effect, time)[10]);
+    assert_eq!(drawn, [0.0, 1.0, 1.0, 0.0]);
 }
 
 #[test]

@@ -61,6 +61,9 @@ fn contours_and_points_are_drawn_where_they_are() {
         // Each name has a dark copy behind it. OpenGL has no text: there the letters are lines.
         assert_eq!(effect.texts().len(), if draw_suite { 6 } else { 0 });
         assert_eq!(effect.drawn().len() > lines.len() + 100, !draw_suite);
+        // A time that is rounded is its frame.
+        assert_eq!(effect.overlay(DRAW, draw_suite, 2.000000001, [0.0; 2], 0.5), OK);
+        assert_eq!(without_letters(&effect), lines);
         // Between frames there are contours, but no control points.
         assert_eq!(effect.overlay(DRAW, draw_suite, 2.5, [0.0; 2], 0.5), OK);
         assert_eq!(without_letters(&effect).len(), 3);
