@@ -214,7 +214,9 @@ impl Editor {
         let drag = self.drag.as_ref().filter(|drag| drag.frame == work.frame)?;
         match &drag.grip {
             Grip::Points if self.moved(work) => Some(Transform::shift(drag.to - drag.from)),
-            Grip::Handle(handle, handles) => Some(handles.drag(*handle, drag.from, drag.to, self.shift, &work.lens)),
+            Grip::Handle(handle, handles) if self.moved(work) => {
+                Some(handles.drag(*handle, drag.from, drag.to, self.shift, &work.lens))
+            }
             _ => None,
         }
     }

@@ -369,6 +369,9 @@ fn handles_scale_and_a_drag_over_a_change_of_frame_is_dropped() {
     let points = &scaled.scene.parts[0].tracks[&2];
     assert!(points[2].distance(p(70.0, 70.0)) < 1e-9 && points[0].distance(p(30.0, 30.0)) < 1e-9, "{points:?}");
     assert_eq!(scaled.scene.parts[0].pins[&2].len(), 3, "the corner that stays is not pinned");
+    // A click on a handle that trembles is no edit.
+    assert!(matches!(drag(&mut editor, &work, corner, corner + p(1.2, 1.2)), Outcome::Shown));
+    assert_eq!(editor.selection.len(), 4);
     editor.selection = Selection::default();
     editor.down(&work, p(30.0, 30.0));
     editor.move_to(&work, p(5.0, 5.0));
