@@ -8,7 +8,7 @@
 //!
 //! Shapes beyond the footage have no file; a message names their frames.
 //!
-//! Limits: a percent sign in the name is only the frame's number.
+//! The name is a pattern as everywhere: `%%` stands for a percent sign.
 
 use crate::ofx::progress::Bar;
 use crate::ofx::{Effect, Failure};
@@ -24,7 +24,8 @@ use std::path::Path;
 /// frame 0 of the document. Files that were finished before the user cancels stay.
 pub fn write(effect: &Effect, document: &Document, name: &str, offset: i32) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::Told(format!("export file: {error}"));
-    let pattern = FramePattern::parse(name).map_err(|error| told(&error))?;
+    // Without a number each frame would replace the one before it.
+    FramePattern::parse(name).map_err(|error| told(&error))?;
     let (first, last) = (document.scene.footage.first, document.scene.footage.last);
     // Threads of its own end with it. Those that all work of a process shares would outlive the plugin.
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
@@ -34,16 +35,14 @@ pub fn write(effect: &Effect, document: &Document, name: &str, offset: i32) -> R
         if !bar.update(f64::from(frame - first) / f64::from(last - first + 1)) {
             return Err(Failure::Aborted);
         }
-        let path = pattern.path(frame.saturating_add(offset));
-        let output = path.to_str().ok_or_else(|| told(&"found a name that is not Unicode"))?.to_owned();
         let job = RenderJob {
             picture: Picture::Ids,
             frames: Some(frame..=frame),
-            offset: 0,
+            offset,
             parts: None,
             scale: 1.0,
             form: Form::default(),
-            output,
+            output: name.to_owned(),
         };
         let folder = Path::new("");
         pool.install(|| pipeline::render(document, folder, &job, &Silent)).map_err(|error| told(&error))?;

@@ -428,6 +428,12 @@ fn ids_for_keyers_are_written_for_each_frame_of_the_composition() {
     let facts = Facts { pixel_aspect: 1.0, chromaticities: BT709, fps: scene.footage.fps, time_code: None };
     let wanted = describe(wanted, &facts);
     assert!(std::fs::read(folder.path().join("ids_1003.exr")).unwrap() == wanted);
+    // A percent sign in the name of a folder is written as two.
+    let odd = folder.path().join("100%");
+    std::fs::create_dir(&odd).unwrap();
+    effect.set_text("exportFile", folder.path().join("100%%").join("a_%d.exr").to_str().unwrap());
+    assert_eq!(effect.press("export"), OK, "{:?}", host.messages());
+    assert!(std::fs::read(odd.join("a_1003.exr")).unwrap() == wanted);
     effect.set_text("exportFile", folder.path().join("ids.exr").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
     let told = host.messages().join("\n");
