@@ -120,7 +120,7 @@ fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
         let read = state.read.as_ref().map(|file| file.path.as_str());
         [Some(state.loaded.as_str()), read].into_iter().flatten().any(|known| saving::is_same(known, &path))
     };
-    let empty = parameters.text(c"document")?.trim().is_empty();
+    let empty = parameters.is_blank(c"document")?;
     Ok(empty || !instance(effect)?.state(&parameters).is_ok_and(|state| is_known(&state)))
 }
 

@@ -31,7 +31,7 @@ struct Note {
 }
 
 /// A stored state: its text, and what it says or why it could not be read.
-type ReadState = (String, Result<Arc<State>, String>);
+type ReadState = (Arc<str>, Result<Arc<State>, String>);
 
 /// The data that an instance keeps between actions.
 #[derive(Debug, Default)]
@@ -60,7 +60,7 @@ struct Read {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Origin {
     /// The text stored in the composition.
-    Text(String),
+    Text(Arc<str>),
     /// A file with its modification time and size.
     File(String, Option<(SystemTime, u64)>),
 }
@@ -68,6 +68,12 @@ pub enum Origin {
 impl Instance {
     /// The document stored in the composition, or else the project's file. `None` if there is neither.
     pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
+        let known = lock(&self.read).clone();
+        if let Some(Read { origin: Origin::Text(text), result, .. }) = known
+            && parameters.is_text(c"document", &text)?
+        {
+            return result.map(Some).map_err(Failure::Told);
+        }
         let text = parameters.text(c"document")?;
         let origin = if text.trim().is_empty() {
             let path = parameters.text(c"project")?;
@@ -77,7 +83,7 @@ impl Instance {
             let stamp = std::fs::metadata(&path).and_then(|data| Ok((data.modified()?, data.len()))).ok();
             Origin::File(path, stamp)
         } else {
-            Origin::Text(text)
+            Origin::Text(text.into())
         };
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
@@ -103,7 +109,7 @@ impl Instance {
 
     /// The document stored in the composition; `None` if there is none.
     pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
-        if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
+        if parameters.is_blank(c"document")? { Ok(None) } else { self.document(parameters) }
     }
 
     /// The project's file as it was read, where the composition has no document of its own.
@@ -148,14 +154,16 @@ impl Instance {
 
     /// The settings of the parts, and what their tracks were made from.
     pub fn state(&self, parameters: &Parameters) -> Result<Arc<State>, Failure> {
+        let known = lock(&self.state).clone();
+        if let Some((text, state)) = known
+            && parameters.is_text(c"state", &text)?
+        {
+            return state.map_err(Failure::Told);
+        }
         let text = parameters.text(c"state")?;
-        let mut read = lock(&self.state);
-        let known = read.take().filter(|(known, _)| *known == text);
-        let (_, state) = read.insert(known.unwrap_or_else(|| {
-            let state = State::parse(&text).map(Arc::new);
-            (text, state)
-        }));
-        state.clone().map_err(Failure::Told)
+        let state = State::parse(&text).map(Arc::new);
+        *lock(&self.state) = Some((text.into(), state.clone()));
+        state.map_err(Failure::Told)
     }
 
     /// The selection and the pen's unfinished work.

@@ -137,6 +137,10 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         instance.editor().release_keys();
         return Err(Failure::Default);
     }
+    if view.event == Event::Move && !instance.is_tracking() && instance.editor().is_idle() {
+        // The commonest event by far.
+        return Err(Failure::Default);
+    }
     let shown = Shown::of(view)?;
     if view.event == Event::Draw {
         // A copy, so that the host may call back while it draws.

@@ -10,6 +10,11 @@ impl Editor {
         self.sketch.clone()
     }
 
+    /// Whether the pen holds nothing and draws nothing, so that its movements mean nothing here.
+    pub fn is_idle(&self) -> bool {
+        self.drag.is_none() && self.sketch.is_none()
+    }
+
     /// Takes an unfinished contour back.
     pub fn restore(&mut self, sketch: Option<Sketch>) {
         self.sketch = sketch;
