@@ -3,7 +3,7 @@
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::job::Tracked;
 use super::parts::{meant, selected};
-use super::reach::Reach;
+use super::reach::{self, Reach};
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
@@ -103,7 +103,12 @@ fn store_from(
         document = followed.document;
     }
     let list = if let Kind::Drawn { list } = &kind { list.as_deref() } else { None };
-    write(effect, label, &document, (state, &page), list)
+    write(effect, label, &document, (state, &page), list)?;
+    let longer = before.and_then(|before| reach::told(&before.scene.footage, &document.scene.footage));
+    if let Some(text) = longer {
+        instance.note(effect, &text, false);
+    }
+    Ok(())
 }
 
 /// The file that is only shown so far, if this document of it is to be the composition's own. The composition has no folder,

@@ -56,6 +56,15 @@ pub fn widen_to_tracks(scene: &mut Scene) {
     }
 }
 
+/// What is told where the footage of a project from a file has become longer. The file's own frames may end earlier.
+pub fn told(before: &Footage, after: &Footage) -> Option<String> {
+    let longer = (before.first, before.last) != (after.first, after.last) && !fresh::is_own(after);
+    let (first, last) = (after.first, after.last);
+    longer.then(|| {
+        format!("the project's footage has the frames {first} to {last} now, because there are shapes on them")
+    })
+}
+
 /// Frames that a document can have; `None` for a clip without an end, such as a still.
 fn frames(first: f64, last: f64) -> Option<[FrameNumber; 2]> {
     let most = MAX_FRAME_NUMBER as f64;

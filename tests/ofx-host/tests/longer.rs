@@ -82,6 +82,16 @@ fn a_project_is_widened_only_where_it_is_worked_on() {
     assert_eq!(footage(&kept(&effect)), footage(&keyed()), "no part is tracked beyond its keys");
     assert_eq!(effect.press_at("newKey", 10.0), OK, "{:?}", host.messages());
     assert_eq!(footage(&kept(&effect)), [0, 9]);
+    assert!(host.messages().iter().any(|text| text.contains("has the frames 0 to 9 now")));
+    // A part with one key is tracked to the source's end.
+    let mut document = keyed();
+    document.scene.parts[0].keys.retain(|frame, _| *frame == 0);
+    effect.set_text("document", &document.to_json());
+    assert_eq!(effect.press("track"), OK, "{:?}", host.messages());
+    let (tracked, told) = (kept(&effect), host.messages());
+    let last = *tracked.scene.parts[0].tracks.last_key_value().unwrap().0;
+    assert_eq!(footage(&tracked), [0, last.max(5)]);
+    assert_eq!(told.iter().any(|text| text.contains("frames 0 to")), last > 5, "{last} {told:?}");
     assert_eq!(effect.press_at("newKey", 20.0), "kOfxStatFailed");
     assert!(host.messages().iter().any(|text| text.contains("frame 19 is outside")));
     // A project whose frames the source does not have has another frame offset.
