@@ -113,18 +113,18 @@ impl<'a> Effect<'a> {
         }
     }
 
-    /// Shows the user an error or a warning about the picture, without interrupting. It is logged if the host cannot show
-    /// such messages.
-    pub fn note(&self, text: &str, error: bool) {
+    /// Shows the user all errors and warnings about the picture, without interrupting. Hosts keep one such message for each effect. If
+    /// the host cannot show it, what is `new` in it is logged.
+    pub fn note(&self, all: &str, new: &str, error: bool) {
         let kind = if error { kOfxMessageError } else { kOfxMessageWarning };
-        let text = terminated(text);
+        let text = terminated(all);
         let persistent = self.suites.persistent.and_then(|suite| suite.setPersistentMessage);
         // SAFETY: the effect's own handle and terminated texts; `%s` takes the one that follows.
         let told = persistent.is_some_and(|function| unsafe {
             function(self.handle.cast(), kind.as_ptr(), c"rototoon".as_ptr(), c"%s".as_ptr(), text.as_ptr()) == 0
         });
         if !told {
-            log(&text.to_string_lossy());
+            log(new);
         }
     }
 

@@ -92,6 +92,25 @@ impl<'a> Parameters<'a> {
         Ok(unsafe { copied(value) })
     }
 
+    /// Whether a text is the same as a known one. Long texts are compared without a copy.
+    pub fn is_text(&self, id: &CStr, known: &str) -> Result<bool, Failure> {
+        self.look(id, |text| text == known.as_bytes())
+    }
+
+    /// Whether a text has nothing but blanks.
+    pub fn is_blank(&self, id: &CStr) -> Result<bool, Failure> {
+        self.look(id, |text| text.iter().all(u8::is_ascii_whitespace))
+    }
+
+    /// Looks at the bytes of a text, which may be long.
+    fn look<T>(&self, id: &CStr, look: impl FnOnce(&[u8]) -> T) -> Result<T, Failure> {
+        let mut value: *const c_char = std::ptr::null();
+        let place: *mut *const c_char = &mut value;
+        call!(self.suites.parameter, paramGetValue, self.handle(id)?, place)?;
+        // SAFETY: the host gave null or a terminated string that lives until the parameter changes, and `look` calls no host.
+        Ok(look(if value.is_null() { &[] } else { unsafe { CStr::from_ptr(value) }.to_bytes() }))
+    }
+
     /// Runs changes of parameters as one undo step named `label`. A host without edit blocks makes one step per parameter.
     pub fn edit(&self, label: &str, change: impl FnOnce() -> Result<(), Failure>) -> Result<(), Failure> {
         let label = terminated(label);
@@ -105,7 +124,7 @@ impl<'a> Parameters<'a> {
 
     /// Sets a text. One that is the same already is left, so that no undo step is made.
     pub fn set_text(&self, id: &CStr, value: &str) -> Result<(), Failure> {
-        if self.text(id).is_ok_and(|known| known == value) {
+        if self.is_text(id, value).unwrap_or(false) {
             return Ok(());
         }
         let value = terminated(value);

@@ -2,6 +2,7 @@
 //!
 //! Only changes by the user are handled. Each value that the plugin sets itself is reported as a change too.
 
+use super::reach::Reach;
 use super::state::{FileMark, State};
 use super::track::BUSY;
 use super::{choosing, edits, footage, fresh, instance, listing, marks, page, saving, taking_out, track, visits};
@@ -119,7 +120,7 @@ fn is_new_file(effect: &Effect) -> Result<bool, Failure> {
         let read = state.read.as_ref().map(|file| file.path.as_str());
         [Some(state.loaded.as_str()), read].into_iter().flatten().any(|known| saving::is_same(known, &path))
     };
-    let empty = parameters.text(c"document")?.trim().is_empty();
+    let empty = parameters.is_blank(c"document")?;
     Ok(empty || !instance(effect)?.state(&parameters).is_ok_and(|state| is_known(&state)))
 }
 
@@ -160,15 +161,22 @@ fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> 
         Some(document) => Document::clone(&document),
         None => fresh::document(effect)?,
     };
+    Reach::of(effect)?.widen_own(&mut document.scene.footage);
     // The file has the composition's frames.
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let format = ShapeFormat::of(extension, document.scene.footage.first);
     let format = format.ok_or_else(|| told(&"expected a file of shapes"))?;
     let text = pipeline::shapes_text(path).map_err(|error| told(&error))?;
     let imported = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| told(&error))?;
+    let hidden = edits::hidden_new(effect, &document)?;
     edits::store_imported(effect, document, &path.to_string_lossy())?;
     for warning in imported.warnings.iter().take(MOST_WARNINGS).chain(&imported.told()) {
         instance(effect)?.note(effect, warning, false);
+    }
+    if !hidden.is_empty() {
+        let names: Vec<String> = hidden.iter().map(|name| format!("{name:?}")).collect();
+        let text = format!("Parts names other parts, so these are not shown: {}", names.join(", "));
+        instance(effect)?.note(effect, &text, false);
     }
     Ok(())
 }

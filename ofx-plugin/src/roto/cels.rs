@@ -13,9 +13,6 @@ use rototoon::render::paint::Region;
 use rototoon::scene::FrameNumber;
 use std::collections::BTreeSet;
 
-/// By how much a host's time may be too early for a frame, in frames: times are sums of floats.
-const EARLY: f64 = 1e-3;
-
 const NO_REGIONS: &str = "the project has no painted regions: `rototoon fill` and Fill Drawings in Blender make them";
 const NO_STROKES: &str =
     "the project has no strokes: `rototoon trace`, `rototoon tween` and Export in Blender write them";
@@ -70,7 +67,7 @@ fn read<'a>(effect: &Effect, document: &'a Loaded, settings: &Settings) -> Resul
 
 /// The frame that is shown. `None` if nothing is.
 fn frame(settings: &Settings) -> Option<FrameNumber> {
-    let frame = (settings.document_time + EARLY).floor();
+    let frame = settings.document_time.floor();
     let whole = settings.shown && (f64::from(FrameNumber::MIN)..=f64::from(FrameNumber::MAX)).contains(&frame);
     whole.then_some(frame as FrameNumber)
 }

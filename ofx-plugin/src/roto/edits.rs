@@ -3,6 +3,7 @@
 use super::edit::{Edit, Outcome, Refused, Selection, Work, absence, change, naming, order};
 use super::job::Tracked;
 use super::parts::{meant, selected};
+use super::reach::{self, Reach};
 use super::settings::Settings;
 use super::shared::Loaded;
 use super::state::{FileMark, State};
@@ -28,12 +29,36 @@ pub fn is_locked(parameters: &Parameters, state: &State, name: &str) -> bool {
 
 /// Stores an edited document. An edit at a time of the host is followed at once where *Live* can, in the same step of undo.
 pub fn store(effect: &Effect, label: &str, document: Document, live: Option<f64>) -> Result<(), Failure> {
-    store_from(effect, label, document, live, None)
+    let hidden = hidden_new(effect, &document)?;
+    let list = effect.parameters()?.text(c"parts")?;
+    let names = [list.trim().trim_end_matches([',', ' '])].into_iter().chain(hidden.iter().map(|name| &**name));
+    let list = (!hidden.is_empty()).then(|| names.collect::<Vec<_>>().join(", "));
+    store_from(effect, label, document, live, Kind::Drawn { list })
+}
+
+/// The new parts of a document that **Parts** does not name, so that they would not be shown.
+pub fn hidden_new(effect: &Effect, document: &Document) -> Result<Vec<String>, Failure> {
+    let (instance, parameters) = (instance(effect)?, effect.parameters()?);
+    // Project may name a file that is no document.
+    let (before, list) = (instance.document(&parameters).ok().flatten(), parameters.text(c"parts")?);
+    let shown = selected(&document.scene.parts, &list).0;
+    let is_known = |name: &str| before.iter().any(|before| before.scene.parts.iter().any(|part| part.name == name));
+    let parts = document.scene.parts.iter().enumerate();
+    let hidden = parts.filter(|(index, part)| !shown.contains(index) && !is_known(&part.name));
+    Ok(hidden.map(|(_, part)| part.name.clone()).collect())
 }
 
 /// Stores a document with the shapes of a file of another program.
 pub fn store_imported(effect: &Effect, document: Document, path: &str) -> Result<(), Failure> {
-    store_from(effect, "Import shapes", document, None, Some(path))
+    store_from(effect, "Import shapes", document, None, Kind::Imported { path })
+}
+
+/// How an edited document came about.
+enum Kind<'a> {
+    /// With the pen and the buttons. **Parts** becomes this list, if there is one.
+    Drawn { list: Option<String> },
+    /// From a file of another program.
+    Imported { path: &'a str },
 }
 
 fn store_from(
@@ -41,7 +66,7 @@ fn store_from(
     label: &str,
     mut document: Document,
     live: Option<f64>,
-    path: Option<&str>,
+    kind: Kind,
 ) -> Result<(), Failure> {
     let problems = document.problems();
     if problems.error_count() > 0 {
@@ -53,7 +78,7 @@ fn store_from(
         if shown.is_some() { instance.document(&parameters)? } else { instance.document_of_text(&parameters)? };
     let edited = |state: &mut State, document: &Document| {
         shown.iter().for_each(|file| state.note_file(file));
-        if let Some(path) = path {
+        if let Kind::Imported { path } = kind {
             path.clone_into(&mut state.loaded);
         }
         if let Some(before) = &before {
@@ -77,7 +102,13 @@ fn store_from(
         state.note_tracked_spans(&document.scene.parts, &followed);
         document = followed.document;
     }
-    write(effect, label, &document, state, &page)
+    let list = if let Kind::Drawn { list } = &kind { list.as_deref() } else { None };
+    write(effect, label, &document, (state, &page), list)?;
+    let longer = before.and_then(|before| reach::told(&before.scene.footage, &document.scene.footage));
+    if let Some(text) = longer {
+        instance.note(effect, &text, false);
+    }
+    Ok(())
 }
 
 /// The file that is only shown so far, if this document of it is to be the composition's own. The composition has no folder,
@@ -99,7 +130,7 @@ pub fn store_tracked(effect: &Effect, before: &[Part], mut tracked: Tracked) -> 
     adopted(effect, &mut tracked.document)?.iter().for_each(|file| state.note_file(file));
     state.note_tracked_spans(before, &tracked);
     let page = state.page.clone();
-    write(effect, "Track", &tracked.document, state, &page)
+    write(effect, "Track", &tracked.document, (state, &page), None)
 }
 
 /// Stores a document that replaces the composition's, with its parts' settings where the names are the same.
@@ -111,12 +142,24 @@ pub fn store_loaded(effect: &Effect, document: &Document, file: &FileMark) -> Re
     state.changed.clear();
     state.note_file(file);
     state.keep_only(&document.scene.parts);
-    write(effect, "Load project", document, state, &page)
+    write(effect, "Load project", document, (state, &page), None)
 }
 
-fn write(effect: &Effect, label: &str, document: &Document, state: State, page: &str) -> Result<(), Failure> {
+/// Puts a document and a state into the parameters as one step, and a list into **Parts** if there is one.
+fn write(
+    effect: &Effect,
+    label: &str,
+    document: &Document,
+    (state, page): (State, &str),
+    list: Option<&str>,
+) -> Result<(), Failure> {
     let parameters = effect.parameters()?;
-    parameters.edit(label, || put(&parameters, document, state, page))?;
+    parameters.edit(label, || {
+        if let Some(list) = list {
+            parameters.set_text(c"parts", list)?;
+        }
+        put(&parameters, document, state, page)
+    })?;
     listing::refresh(effect);
     Ok(())
 }
@@ -178,6 +221,8 @@ struct Bench {
     chosen: Option<usize>,
     /// The number in Place.
     place: usize,
+    /// The frames of the source.
+    reach: Reach,
 }
 
 impl Bench {
@@ -203,7 +248,7 @@ impl Bench {
             return Err(Failure::Told(Refused::protected(&document.scene.parts[part].name).0));
         }
         let place = usize::try_from(parameters.int(c"place", time)?).unwrap_or(1);
-        Ok(Self { document, frame, parts, chosen, place })
+        Ok(Self { document, frame, parts, chosen, place, reach: Reach::of(effect)? })
     }
 
     fn work(&self) -> Work<'_> {
@@ -215,6 +260,7 @@ impl Bench {
             tool: super::edit::Tool::Select,
             closed: true,
             name: "",
+            reach: self.reach,
         }
     }
 
@@ -276,7 +322,8 @@ pub fn rename(effect: &Effect, time: f64) -> Result<(), Failure> {
     state.rename(&old, new);
     parameters.edit("Rename part", || {
         for list in LISTS {
-            parameters.set_text(list, &naming::in_list(&parameters.text(list)?, &old, new))?;
+            parameters
+                .set_text(list, &naming::in_list(&parameters.text(list)?, &bench.document.scene.parts, &old, new))?;
         }
         parameters.set_text(c"part", new)?;
         put(&parameters, &document, state, &page)
@@ -292,7 +339,7 @@ fn refused(text: &str) -> Outcome {
 
 /// The buttons that change whole parts.
 fn on_parts(bench: &Bench, name: &str) -> Outcome {
-    let mut document = Document::clone(&bench.document);
+    let mut document = bench.work().draft();
     let frame = bench.frame;
     let part = bench.chosen.map_or_else(String::new, |part| format!("{:?}", document.scene.parts[part].name));
     let (label, nothing, done) = match name {

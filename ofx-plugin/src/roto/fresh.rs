@@ -7,7 +7,12 @@ use rototoon::project::Document;
 use rototoon::scene::{Footage, FrameNumber, Scene};
 
 /// Stands for the frames of the source, which the host has and not a folder.
-const PATTERN: &str = "source_%04d.png";
+pub const PATTERN: &str = "source_%04d.png";
+
+/// Whether footage stands for the frames of the source.
+pub fn is_own(footage: &Footage) -> bool {
+    footage.pattern == PATTERN
+}
 
 /// An empty document for the source.
 pub fn document(effect: &Effect) -> Result<Document, Failure> {

@@ -11,7 +11,6 @@ use crate::ofx::{Effect, Failure, Parameters};
 use rototoon::pipeline::unchanged::Mark;
 use rototoon::project::Document;
 use rototoon::scene::Part;
-use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -24,14 +23,21 @@ pub const NO_SHAPES: &str = "found no shapes: draw some, or load a project first
 /// Most different messages until the user changes something.
 const MOST_NOTES: usize = 20;
 
+/// A message about the picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Note {
+    text: String,
+    error: bool,
+}
+
 /// A stored state: its text, and what it says or why it could not be read.
-type ReadState = (String, Result<Arc<State>, String>);
+type ReadState = (Arc<str>, Result<Arc<State>, String>);
 
 /// The data that an instance keeps between actions.
 #[derive(Debug, Default)]
 pub struct Instance {
     read: Mutex<Option<Read>>,
-    told: Mutex<BTreeSet<String>>,
+    told: Mutex<Vec<Note>>,
     state: Mutex<Option<ReadState>>,
     editor: Mutex<Editor>,
     film: Mutex<Option<Arc<Film>>>,
@@ -54,7 +60,7 @@ struct Read {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Origin {
     /// The text stored in the composition.
-    Text(String),
+    Text(Arc<str>),
     /// A file with its modification time and size.
     File(String, Option<(SystemTime, u64)>),
 }
@@ -62,6 +68,12 @@ pub enum Origin {
 impl Instance {
     /// The document stored in the composition, or else the project's file. `None` if there is neither.
     pub fn document(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
+        let known = lock(&self.read).clone();
+        if let Some(Read { origin: Origin::Text(text), result, .. }) = known
+            && parameters.is_text(c"document", &text)?
+        {
+            return result.map(Some).map_err(Failure::Told);
+        }
         let text = parameters.text(c"document")?;
         let origin = if text.trim().is_empty() {
             let path = parameters.text(c"project")?;
@@ -71,7 +83,7 @@ impl Instance {
             let stamp = std::fs::metadata(&path).and_then(|data| Ok((data.modified()?, data.len()))).ok();
             Origin::File(path, stamp)
         } else {
-            Origin::Text(text)
+            Origin::Text(text.into())
         };
         let mut read = lock(&self.read);
         if read.as_ref().is_none_or(|read| read.origin != origin) {
@@ -97,7 +109,7 @@ impl Instance {
 
     /// The document stored in the composition; `None` if there is none.
     pub fn document_of_text(&self, parameters: &Parameters) -> Result<Option<Arc<Loaded>>, Failure> {
-        if parameters.text(c"document")?.trim().is_empty() { Ok(None) } else { self.document(parameters) }
+        if parameters.is_blank(c"document")? { Ok(None) } else { self.document(parameters) }
     }
 
     /// The project's file as it was read, where the composition has no document of its own.
@@ -117,27 +129,41 @@ impl Instance {
         *lock(&self.read) = None;
     }
 
-    /// Shows the user a message about the picture, once until the user changes something.
+    /// Shows the user a message about the picture, beside those that stand already, until the user changes something.
     pub fn note(&self, effect: &Effect, text: &str, error: bool) {
-        let new = {
+        let mut told = {
             let mut told = lock(&self.told);
-            told.len() < MOST_NOTES && told.insert(text.to_owned())
+            if told.len() >= MOST_NOTES || told.iter().any(|note| note.text == text) {
+                return;
+            }
+            told.push(Note { text: text.to_owned(), error });
+            told.clone()
         };
-        if new {
-            effect.note(text, error);
+        // A host may draw while it shows a message, so the lock is open. What was noted meanwhile is shown by whoever comes last.
+        loop {
+            let first = told.iter().filter(|note| note.error);
+            let all: Vec<&str> = first.chain(told.iter().filter(|note| !note.error)).map(|note| &*note.text).collect();
+            effect.note(&all.join("; "), text, told.iter().any(|note| note.error));
+            let now = lock(&self.told).clone();
+            if now.len() <= told.len() {
+                break;
+            }
+            told = now;
         }
     }
 
     /// The settings of the parts, and what their tracks were made from.
     pub fn state(&self, parameters: &Parameters) -> Result<Arc<State>, Failure> {
+        let known = lock(&self.state).clone();
+        if let Some((text, state)) = known
+            && parameters.is_text(c"state", &text)?
+        {
+            return state.map_err(Failure::Told);
+        }
         let text = parameters.text(c"state")?;
-        let mut read = lock(&self.state);
-        let known = read.take().filter(|(known, _)| *known == text);
-        let (_, state) = read.insert(known.unwrap_or_else(|| {
-            let state = State::parse(&text).map(Arc::new);
-            (text, state)
-        }));
-        state.clone().map_err(Failure::Told)
+        let state = State::parse(&text).map(Arc::new);
+        *lock(&self.state) = Some((text.into(), state.clone()));
+        state.map_err(Failure::Told)
     }
 
     /// The selection and the pen's unfinished work.

@@ -5,6 +5,7 @@
 
 use super::fetching::{Clerk, HostFrames};
 use super::film::{Kept, Terms};
+use super::reach::{Reach, widen_to_tracks};
 use crate::description::SOURCE;
 use crate::ofx::progress::Bar;
 use crate::ofx::{Clip, Effect, Failure};
@@ -33,6 +34,8 @@ pub struct Job {
     /// Whether the user has left out frames of the source.
     is_limited: bool,
     offset: i32,
+    /// The frames of the source.
+    reach: Reach,
     options: TrackOptions,
     live: bool,
     /// Most bytes of frames that stay in memory.
@@ -82,7 +85,7 @@ impl Job {
         let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
         let live = parameters.int(c"live", time)? != 0;
         let memory = parameters.double(c"liveMemory", time)? * GIGABYTE;
-        Ok(Self { scene, range, is_limited, offset, options, live, memory })
+        Ok(Self { scene, range, is_limited, offset, reach: Reach::of(effect)?, options, live, memory })
     }
 
     /// The circumstances.
@@ -112,6 +115,8 @@ impl Job {
     pub fn merged(&self, document: &Document, tracking: Tracking) -> Result<Tracked, Failure> {
         let mut document = document.clone();
         merge(&mut document.scene, tracking, &self.range);
+        self.reach.widen_own(&mut document.scene.footage);
+        widen_to_tracks(&mut document.scene);
         let problems = document.problems();
         if problems.error_count() > 0 {
             return Err(Failure::Told(problems.to_string()));

@@ -7,6 +7,7 @@
 use super::edit::{Edit, Editor, Key, Lens, Outcome, Tool, Work, order};
 use super::parts::{meant, selected};
 use super::placement::Placement;
+use super::reach::Reach;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
 use super::stale::Stale;
@@ -43,6 +44,7 @@ pub struct Shown {
     closed: bool,
     /// Name of the selected part.
     pub name: String,
+    reach: Reach,
 }
 
 impl Shown {
@@ -67,8 +69,22 @@ impl Shown {
         let tool = tool(parameters.int(c"tool", view.time)?);
         let (closed, name) = (parameters.int(c"drawClosed", view.time)? != 0, parameters.text(c"part")?);
         let (name, stale) = (meant(&document.scene.parts, &name).into(), instance.stale());
-        let colours = settings::colours(&parameters, &state)?;
-        Ok(Self { document, parts, unlocked, settings, state, stale, colours, placement, lens, tool, closed, name })
+        let (colours, reach) = (settings::colours(&parameters, &state)?, Reach::of(&view.effect)?);
+        Ok(Self {
+            document,
+            parts,
+            unlocked,
+            settings,
+            state,
+            stale,
+            colours,
+            placement,
+            lens,
+            tool,
+            closed,
+            name,
+            reach,
+        })
     }
 
     /// The colour of a part.
@@ -99,6 +115,7 @@ impl Shown {
             tool: self.tool,
             closed: self.closed,
             name: &self.name,
+            reach: self.reach,
         }
     }
 }
@@ -120,6 +137,10 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         instance.editor().release_keys();
         return Err(Failure::Default);
     }
+    if view.event == Event::Move && !instance.is_tracking() && instance.editor().is_idle() {
+        // The commonest event by far.
+        return Err(Failure::Default);
+    }
     let shown = Shown::of(view)?;
     if view.event == Event::Draw {
         // A copy, so that the host may call back while it draws.
@@ -139,11 +160,18 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         return Ok(());
     }
     // The editor is free again before the host is called.
-    let outcome = {
+    let (unfinished, outcome) = {
         let mut editor = instance.editor();
-        happen(view, &shown, frame, &mut editor)
+        let unfinished = if view.event == Event::Move { None } else { editor.unfinished() };
+        (unfinished, happen(view, &shown, frame, &mut editor))
     };
+    let edits = matches!(outcome, Outcome::Edited(_));
     let result = keep(view, &shown, outcome);
+    if edits && let Err(Failure::Told(text)) = &result {
+        // The edit is not made, so the contour is as unfinished as before.
+        instance.editor().restore(unfinished);
+        view.effect.complain(text);
+    }
     if result != Err(Failure::Default) {
         view.redraw();
     }

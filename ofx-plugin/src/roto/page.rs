@@ -1,8 +1,10 @@
 //! The page of the selected part: its settings as parameters of the host, with the host's own keys.
 //!
 //! When another part is selected, the values and keys of the page are stored for the old part, and those of the new part are
-//! set. Both happen within the edit that selects, so that undo takes both back.
+//! set. Both happen within the edit that selects, so that undo takes both back. Where the host interpolates the keys that come back
+//! otherwise than before, it gets more of them ([`interpolation`]).
 
+use super::interpolation;
 use super::state::{Curve, MOST_FRAMES, PartSettings, State};
 use crate::ofx::{Failure, Parameters};
 use std::ffi::CStr;
@@ -92,7 +94,7 @@ pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Fail
         (c"partFeather", &settings.feather),
         (c"partFalloff", &settings.falloff),
     ] {
-        set(parameters, id, curve, &|value| Ok(parameters.double(id, 0.0)? == value), &|time, value| match time {
+        set(parameters, id, curve, &|time| parameters.double(id, time), &|time, value| match time {
             Some(time) => parameters.set_double_at(id, time, value),
             None => parameters.set_double(id, value),
         })?;
@@ -110,29 +112,37 @@ pub fn show(parameters: &Parameters, settings: &PartSettings) -> Result<(), Fail
 
 /// Sets a whole number or a flag.
 fn whole(parameters: &Parameters, id: &CStr, curve: &Curve, of: &dyn Fn(f64) -> i32) -> Result<(), Failure> {
-    set(parameters, id, curve, &|value| Ok(parameters.int(id, 0.0)? == of(value)), &|time, value| match time {
-        Some(time) => parameters.set_int_at(id, time, of(value)),
-        None => parameters.set_int(id, of(value)),
+    let mut curve = curve.clone();
+    let values = curve.keys.iter_mut().map(|key| &mut key[1]).chain(&mut curve.frames).chain([&mut curve.value]);
+    values.for_each(|value| *value = of(*value).into());
+    set(parameters, id, &curve, &|time| parameters.int(id, time).map(f64::from), &|time, value| match time {
+        Some(time) => parameters.set_int_at(id, time, value as i32),
+        None => parameters.set_int(id, value as i32),
     })
 }
 
-/// Sets a parameter to a curve. A value that is there already is left, so that undo does not report it. `put` sets a value
-/// at a time, or for all times.
+/// Sets a parameter to a curve. A value that is there already is left, so that undo does not report it. `read` gives the value at
+/// a time, `put` sets a value at a time, or for all times.
 fn set(
     parameters: &Parameters,
     id: &CStr,
     curve: &Curve,
-    is: &dyn Fn(f64) -> Result<bool, Failure>,
+    read: &dyn Fn(f64) -> Result<f64, Failure>,
     put: &dyn Fn(Option<f64>, f64) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let keyed = !parameters.keys(id)?.is_empty();
     if keyed {
         parameters.delete_keys(id)?;
     }
-    if !curve.keys.is_empty() {
-        return curve.keys.iter().try_for_each(|&[time, value]| put(Some(time), value));
+    if curve.keys.is_empty() {
+        return if !keyed && read(0.0)? == curve.value { Ok(()) } else { put(None, curve.value) };
     }
-    if !keyed && is(curve.value)? { Ok(()) } else { put(None, curve.value) }
+    curve.keys.iter().try_for_each(|&[time, value]| put(Some(time), value))?;
+    if parameters.keys(id)?.is_empty() {
+        // The host has no keys for this parameter.
+        return Ok(());
+    }
+    interpolation::keep(curve, read, &|time, value| put(Some(time), value))
 }
 
 /// Stores the page's settings for the part that it shows.

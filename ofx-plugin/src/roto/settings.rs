@@ -8,6 +8,14 @@ use rototoon::scene::{Falloff, FrameNumber};
 use std::collections::BTreeMap;
 use std::ffi::CStr;
 
+/// By how much a host's time may differ from a frame, in frames: times are sums of floats.
+const INEXACT: f64 = 1e-3;
+
+/// A time, or the frame that it stands for.
+pub fn on_frame(time: f64) -> f64 {
+    if (time - time.round()).abs() < INEXACT { time.round() } else { time }
+}
+
 /// The kind of picture that is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Output {
@@ -154,8 +162,9 @@ impl Settings {
         self.document_time.round() as FrameNumber
     }
 
-    /// Reads the values. A number that is not finite counts as 0.
+    /// Reads the values. A number that is not finite counts as 0. A time that differs from a frame by rounding is that frame.
     pub fn read(parameters: &Parameters, time: f64, state: &State) -> Result<Self, Failure> {
+        let time = on_frame(time);
         let number = |id| parameters.double(id, time).map(|v| if v.is_finite() { v } else { 0.0 });
         let flag = |id| Ok::<bool, Failure>(parameters.int(id, time)? != 0);
         let [r, g, b, a] = parameters.colour(c"lineColor", time)?;

@@ -4,9 +4,9 @@ use super::instance::NO_SHAPES;
 use super::motion::Motion;
 use super::parts::meant;
 use super::placement::Placement;
+use super::reach::Reach;
 use super::settings::{self, Settings};
 use super::shared::Loaded;
-use super::state::State;
 use super::{id_files, instance, motion, numbering};
 use crate::description::OUTPUT;
 use crate::ofx::{Effect, Failure};
@@ -49,8 +49,7 @@ pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
     if shapes.is_empty() {
         return Err(Failure::Told(format!("{name:?} has no shape: draw or track it first")));
     }
-    let offset = Settings::read(&parameters, time, &State::default())?;
-    let offset = time - offset.document_time;
+    let offset = f64::from(parameters.int(c"frameOffset", time)?);
     let placement = Placement::of(effect, &document.scene.footage, time, [1.0; 2])?;
     let frames: Vec<FrameNumber> = shapes.keys().copied().collect();
     let placed = |points: &Vec<Point>| points.iter().map(|&p| Point::from(placement.shown(p))).collect();
@@ -77,6 +76,7 @@ pub fn write_motion(effect: &Effect, time: f64) -> Result<(), Failure> {
 fn dressed(effect: &Effect, document: &Document, time: f64) -> Result<Document, Failure> {
     let (parameters, mut document) = (effect.parameters()?, document.clone());
     let state = instance(effect)?.state(&parameters)?;
+    Reach::of(effect)?.widen_own(&mut document.scene.footage);
     let (settings, colours) = (Settings::read(&parameters, time, &state)?, settings::colours(&parameters, &state)?);
     for part in &mut document.scene.parts {
         part.falloff = settings.look(&part.name).falloff.within(part.falloff).within(settings.falloff);
@@ -96,7 +96,11 @@ pub fn export(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_ascii_lowercase();
     if extension == "exr" {
-        return id_files::write(effect, &document, &path.to_string_lossy(), offset);
+        id_files::write(effect, &document, &path.to_string_lossy(), offset)?;
+        if let Some(left_out) = id_files::left_out(&document.scene, offset) {
+            instance(effect)?.note(effect, &left_out, false);
+        }
+        return Ok(());
     }
     numbering::shift(&mut document.scene, offset);
     let options = ShapeOptions { detail: Detail::Spacing(SPACING), pixel_aspect: effect.clip(OUTPUT)?.pixel_aspect() };

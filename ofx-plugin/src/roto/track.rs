@@ -3,7 +3,7 @@
 use super::film::{Film, Kept};
 use super::instance::NO_SHAPES;
 use super::job::{Job, run};
-use super::{edits, instance};
+use super::{edits, instance, reach};
 use crate::description::SOURCE;
 use crate::ofx::{Effect, Failure};
 use rototoon::track::Tracker;
@@ -34,5 +34,10 @@ pub fn track(effect: &Effect, time: f64) -> Result<(), Failure> {
     }
     let tracked = job.merged(&document, tracking)?;
     instance.replace_stale(&document.scene.parts, &tracked);
-    edits::store_tracked(effect, &document.scene.parts, tracked)
+    let longer = reach::told(&document.scene.footage, &tracked.document.scene.footage);
+    edits::store_tracked(effect, &document.scene.parts, tracked)?;
+    if let Some(text) = longer {
+        instance.note(effect, &text, false);
+    }
+    Ok(())
 }

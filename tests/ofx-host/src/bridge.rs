@@ -209,6 +209,7 @@ pub mod ffi {
         fn parameter_property(self: &Effect, name: &str, property: &str, index: i32) -> String;
         fn set_numbers(self: Pin<&mut Effect>, name: &str, values: &[f64]);
         fn set_numbers_at(self: Pin<&mut Effect>, name: &str, time: f64, values: &[f64]);
+        fn hold_keys(self: Pin<&mut Effect>, name: &str);
         fn key_times(self: &Effect, name: &str) -> Vec<f64>;
         fn gone_to(self: &Effect) -> f64;
         fn numbers(self: &Effect, name: &str, time: f64) -> Vec<f64>;

@@ -36,6 +36,7 @@ public:
   rust::String parameter_property(rust::Str name, rust::Str property, int index) const;
   void set_numbers(rust::Str name, rust::Slice<const double> values);
   void set_numbers_at(rust::Str name, double time, rust::Slice<const double> values);
+  void hold_keys(rust::Str name);
   rust::Vec<double> key_times(rust::Str name) const;
   double gone_to() const;
   rust::Vec<double> numbers(rust::Str name, double time) const;

@@ -233,6 +233,11 @@ impl Effect<'_> {
         self.pin().set_numbers_at(name, time, values);
     }
 
+    /// Holds the value of each key of a parameter until the next one, as a user sets in the host's curve editor. The plugin is not told.
+    pub fn hold_keys(&mut self, name: &str) {
+        self.pin().hold_keys(name);
+    }
+
     /// The values of a number, flag, choice or colour at a time.
     pub fn get(&self, name: &str, time: f64) -> Vec<f64> {
         self.inner.numbers(name, time)

@@ -157,6 +157,45 @@ fn bad_documents_are_reported_once_and_do_not_crash() {
 }
 
 #[test]
+fn hosts_with_one_message_for_each_node_show_all_warnings() {
+    let host = host();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("shapes.svg");
+    let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="64" height="48"><text>a</text><image width="9" height="9"/>
+        <path id="leaf" d="M 10 10 L 40 10 L 40 30 Z"/><path id="odd" transform="none of these" d="M 10 10 L 40 10 L 40 30 Z"/></svg>"#;
+    std::fs::write(&file, svg).unwrap();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set_text("document", "");
+    effect.set("output", &[MATTE]);
+    effect.set_text("parts", "l*, none");
+    let _ = host.messages();
+    effect.set_text("project", file.to_str().unwrap());
+    let imported = host.messages().pop().unwrap();
+    assert!(imported.contains("text") && imported.contains("image") && imported.contains("odd"), "{imported}");
+    rendered(&host, &mut effect, 1.0, WHOLE);
+    let all = host.messages().pop().unwrap();
+    assert!(
+        all.starts_with(&imported) && all.contains("; Parts: ") && all.contains("; the project is not tracked"),
+        "{all}"
+    );
+    // An error is first, and what the user changes takes all of them away.
+    effect.set_text_silently("state", "nonsense");
+    effect.render(1.0, WHOLE, 1.0, 1, 0);
+    let (_, with_error) = (host.log(), host.messages().pop().unwrap());
+    assert!(
+        with_error.starts_with("OfxMessageError: the composition's settings") && with_error.contains("not tracked")
+    );
+    effect.set_text_silently("state", "");
+    effect.set("grow", &[0.0]);
+    rendered(&host, &mut effect, 1.0, WHOLE);
+    let rest = host.messages().pop().unwrap();
+    assert!(
+        rest.starts_with("OfxMessageWarning: Parts") && !rest.contains("image") && !rest.contains("settings"),
+        "{rest}"
+    );
+}
+
+#[test]
 fn warnings_are_shown_once_and_the_picture_is_drawn() {
     let host = host();
     let untracked = {

@@ -13,6 +13,7 @@
 //! - `feather`: the feather of control points
 //! - `order`: parts nearer and farther
 //! - `listing`: the menu of the parts, buttons that go from part to part, and their names
+//! - `longer`: a source that gets longer
 //! - `matrix`: what hosts do, with each output
 //! - `cels`: painted regions and strokes, as the command line draws them
 //! - `unpainted`: paint and strokes where there are none, cannot be read, or only some are wanted
@@ -36,6 +37,7 @@ mod lines;
 mod listing;
 mod live;
 mod lives;
+mod longer;
 mod looks;
 mod matrix;
 mod node;

@@ -100,6 +100,29 @@ fn settings_of_parts_are_animated_by_the_hosts_keys() {
 }
 
 #[test]
+fn a_value_that_the_host_holds_between_keys_is_held_when_its_part_is_selected_again() {
+    let host = host();
+    let mut effect = node(&host, FILTER);
+    effect.set_text("part", "right");
+    for (id, first, last) in [("partOpacity", 1.0, 0.0), ("partGrow", 0.0, 0.25), ("partOn", 1.0, 0.0)] {
+        effect.set_at(id, 0.0, &[first]);
+        effect.set_at(id, 10.0, &[last]);
+        effect.hold_keys(id);
+    }
+    let shown = |effect: &Effect| {
+        ["partOpacity", "partGrow", "partOn"].map(|id| [0.0, 3.0, 9.0, 10.0, 12.0].map(|time| effect.get(id, time)[0]))
+    };
+    let held = shown(&effect);
+    assert_eq!(held[0], [1.0, 1.0, 1.0, 0.0, 0.0]);
+    for _ in 0..3 {
+        effect.set_text("part", "left");
+        effect.set_text("part", "right");
+        assert_eq!((shown(&effect), effect.keys("partOpacity").len()), (held, 3));
+    }
+    clean(&host);
+}
+
+#[test]
 fn the_mode_of_a_part_has_keys_where_the_host_has_them_for_choices() {
     let mut host = host();
     for (choice_keys, said) in [(true, "1"), (false, "0")] {
@@ -233,6 +256,9 @@ fn region_and_frames_are_limited() {
     assert_eq!(shown(&host, &mut effect, 1.0)[10], 1.0);
     effect.set("limitFrames", &[1.0]);
     let drawn = [1.0, 2.0, 3.0, 4.0].map(|time| shown(&host, &mut effect, time)[10]);
+    assert_eq!(drawn, [0.0, 1.0, 1.0, 0.0]);
+    // Hosts sum times as floats.
+    let drawn = [1.9, 1.9999999, 3.0000001, 3.1].map(|time| shown(&host, &mut effect, time)[10]);
     assert_eq!(drawn, [0.0, 1.0, 1.0, 0.0]);
 }
 
@@ -402,6 +428,12 @@ fn ids_for_keyers_are_written_for_each_frame_of_the_composition() {
     let facts = Facts { pixel_aspect: 1.0, chromaticities: BT709, fps: scene.footage.fps, time_code: None };
     let wanted = describe(wanted, &facts);
     assert!(std::fs::read(folder.path().join("ids_1003.exr")).unwrap() == wanted);
+    // A percent sign in the name of a folder is written as two.
+    let odd = folder.path().join("100%");
+    std::fs::create_dir(&odd).unwrap();
+    effect.set_text("exportFile", folder.path().join("100%%").join("a_%d.exr").to_str().unwrap());
+    assert_eq!(effect.press("export"), OK, "{:?}", host.messages());
+    assert!(std::fs::read(odd.join("a_1003.exr")).unwrap() == wanted);
     effect.set_text("exportFile", folder.path().join("ids.exr").to_str().unwrap());
     assert_eq!(effect.press("export"), "kOfxStatFailed");
     let told = host.messages().join("\n");

@@ -17,6 +17,7 @@ const FREEHAND: f64 = 2.0;
 const OFF: f64 = 3.0;
 const DELETE: i32 = 0xffff;
 const ENTER: i32 = 0xff0d;
+const BACK: i32 = 0xff08;
 
 fn shown(p: Point) -> [f64; 2] {
     [p.x, HEIGHT as f64 - p.y]
@@ -60,6 +61,9 @@ fn contours_and_points_are_drawn_where_they_are() {
         // Each name has a dark copy behind it. OpenGL has no text: there the letters are lines.
         assert_eq!(effect.texts().len(), if draw_suite { 6 } else { 0 });
         assert_eq!(effect.drawn().len() > lines.len() + 100, !draw_suite);
+        // A time that is rounded is its frame.
+        assert_eq!(effect.overlay(DRAW, draw_suite, 2.000000001, [0.0; 2], 0.5), OK);
+        assert_eq!(without_letters(&effect), lines);
         // Between frames there are contours, but no control points.
         assert_eq!(effect.overlay(DRAW, draw_suite, 2.5, [0.0; 2], 0.5), OK);
         assert_eq!(without_letters(&effect).len(), 3);
@@ -192,6 +196,60 @@ fn a_composition_without_a_document_is_drawn_on() {
     effect.undo();
     effect.undo();
     assert_eq!(effect.text("document"), "");
+}
+
+#[test]
+fn a_contour_that_is_refused_stays_until_it_can_be_finished() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set("tool", &[CONTOUR]);
+    effect.set_text("part", "ground line");
+    let corners = [(10.0, 10.0), (40.0, 12.0), (25.0, 40.0), (10.0, 10.0)].map(|(x, y)| Point::new(x, y));
+    for at in corners {
+        assert_eq!(effect.overlay(DOWN, true, 3.0, shown(at), 0.2), OK);
+    }
+    let told = host.messages();
+    assert!(
+        told.iter().any(|text| text.contains("is open") && text.contains("press New part; then press Return")),
+        "{told:?}"
+    );
+    assert_eq!(effect.press_at("newPart", 3.0), OK);
+    assert_eq!(effect.overlay_key(KEY, 3.0, ENTER), OK);
+    assert_eq!(kept(&effect).scene.parts[3].keys[&3], corners[..3]);
+    // A point that no document can have is told when the contour is stored. The others are not lost.
+    for at in [corners[0], corners[1], Point::new(1e12, 3.0)] {
+        assert_eq!(effect.overlay(DOWN, true, 4.0, shown(at), 0.2), OK);
+    }
+    assert_eq!(effect.overlay_key(KEY, 4.0, ENTER), "kOfxStatFailed");
+    let told = host.messages();
+    assert!(told.iter().any(|text| text.contains("found [1000000000000")), "{told:?}");
+    effect.overlay_key(KEY, 4.0, BACK);
+    assert_eq!(effect.overlay(DOWN, true, 4.0, shown(corners[2]), 0.2), OK);
+    assert_eq!(effect.overlay_key(KEY, 4.0, ENTER), OK, "{:?}", host.messages());
+    assert_eq!(kept(&effect).scene.parts[4].keys[&4], corners[..3]);
+}
+
+#[test]
+fn a_new_part_is_shown_although_parts_names_others() {
+    let host = host();
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set("tool", &[CONTOUR]);
+    let corners = [(10.0, 10.0), (40.0, 12.0), (25.0, 40.0), (10.0, 10.0)].map(|(x, y)| Point::new(x, y));
+    for (parts, name, after) in
+        [("star, gr*", "", "star, gr*, part 1"), ("star,", "arm", "star, arm"), ("", "leg", ""), ("l*", "leg 2", "l*")]
+    {
+        effect.set_text("parts", parts);
+        effect.set_text("part", name);
+        for at in corners {
+            assert_eq!(effect.overlay(DOWN, true, 3.0, shown(at), 0.2), OK);
+        }
+        assert_eq!(effect.text("parts"), after);
+        // It can be picked, and it is a step of undo with its name in the list.
+        effect.overlay(DRAW, true, 3.0, [0.0; 2], 0.1);
+        assert!(effect.drawn().iter().any(|(closed, line)| *closed && near(line[0], shown(corners[0]))));
+    }
+    (0..3).for_each(|_| effect.undo());
+    assert_eq!((kept(&effect).scene.parts.len(), host.messages()), (4, Vec::new()));
 }
 
 /// Places of the handles around the selection: first that which rotates, then from the upper left corner clockwise.

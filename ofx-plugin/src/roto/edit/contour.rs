@@ -5,7 +5,7 @@
 //! points were set as the part has, they are its points. Another contour becomes a new part in front of all others.
 
 use super::change::{inside_footage, make_key, middle};
-use super::{Lens, Refused};
+use super::{Lens, Refused, naming};
 use rototoon::geometry::{Point, polygon, polyline};
 use rototoon::project::Document;
 use rototoon::render::motion::outline_at;
@@ -39,14 +39,19 @@ pub fn draw(
         let part = &mut parts[index];
         if part.closed != closed {
             let (is, drawn) = if closed { ("open", "closed") } else { ("closed", "open") };
-            let text = format!("{name:?} is {is}, but the contour is {drawn}: set Closed, or press New part first");
-            return Err(Refused::new(text));
+            let switch = if closed { "off" } else { "on" };
+            return Err(Refused::new(format!(
+                "{name:?} is {is}, but the contour is {drawn}: switch Closed {switch}, or press New part; then press Return"
+            )));
         }
         let shape = key_of(part, frame, points, set);
         make_key(part, frame, shape);
         return Ok(index);
     }
-    let nearest = parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
+    naming::check(name, "Part")?;
+    // Parts may be nearer on some frames.
+    let depths = parts.iter().flat_map(|part| part.depths.values().chain([&part.depth]));
+    let nearest = depths.copied().fold(f64::NEG_INFINITY, f64::max);
     let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
     let name = if name.is_empty() { free_name(parts) } else { name.to_owned() };
     parts.push(Part { name, closed, depth, keys: [(frame, points)].into(), ..Part::default() });

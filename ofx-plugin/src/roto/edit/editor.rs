@@ -8,9 +8,12 @@
 //! With *Draw contour* each click sets a point. A click on the first point closes the contour, one on the last point ends an
 //! open one. Return ends it too, Backspace takes the last point back, Escape drops the contour. With *Draw freehand* the
 //! contour is drawn in one stroke. Only with *Select* do Delete and Backspace delete what is selected.
+//!
+//! A contour that is refused stays unfinished: Return finishes it when what the message asks for is done.
 
 use super::handles::{Handle, Handles, Transform};
-use super::{Lens, Place, Refused, Selection, change, contour, feather, hit, points};
+use super::{Lens, Place, Refused, Selection, change, feather, hit, naming, points};
+use crate::roto::reach::Reach;
 use rototoon::geometry::Point;
 use rototoon::project::Document;
 use rototoon::scene::FrameNumber;
@@ -67,13 +70,24 @@ pub struct Work<'a> {
     pub closed: bool,
     /// Name of the part that is drawn; empty for a new one.
     pub name: &'a str,
+    /// The frames of the source.
+    pub reach: Reach,
 }
 
 impl Work<'_> {
-    /// Why nothing can be drawn: the part that is named must not be changed.
+    /// The document for an edit on the frame, which the footage has where the source has it.
+    pub fn draft(&self) -> Document {
+        let mut document = self.document.clone();
+        self.reach.widen(&mut document.scene.footage, self.frame);
+        document
+    }
+
+    /// Why nothing can be drawn: the part that is named must not be changed, or no new part may have the name.
     fn refusal(&self) -> Option<Refused> {
-        let named = self.document.scene.parts.iter().position(|part| part.name == self.name);
-        named.filter(|part| !self.parts.contains(part)).map(|_| Refused::protected(self.name))
+        match self.document.scene.parts.iter().position(|part| part.name == self.name) {
+            Some(part) => (!self.parts.contains(&part)).then(|| Refused::protected(self.name)),
+            None => naming::check(self.name, "Part").err(),
+        }
     }
 }
 
@@ -200,7 +214,9 @@ impl Editor {
         let drag = self.drag.as_ref().filter(|drag| drag.frame == work.frame)?;
         match &drag.grip {
             Grip::Points if self.moved(work) => Some(Transform::shift(drag.to - drag.from)),
-            Grip::Handle(handle, handles) => Some(handles.drag(*handle, drag.from, drag.to, self.shift, &work.lens)),
+            Grip::Handle(handle, handles) if self.moved(work) => {
+                Some(handles.drag(*handle, drag.from, drag.to, self.shift, &work.lens))
+            }
             _ => None,
         }
     }
@@ -302,7 +318,7 @@ impl Editor {
     }
 
     fn insert_at(&mut self, work: &Work, place: hit::OnContour) -> Outcome {
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match points::insert(&mut document, place.part, &[(place.segment, place.share)].into()) {
             Ok(new) => {
                 self.selection = Selection::of(new.into_iter().map(|point| Place { part: place.part, point }));
@@ -316,38 +332,6 @@ impl Editor {
         let parts = self.selection.parts();
         let only = if parts.len() == 1 { parts.first() } else { None };
         Outcome::Selected(only.map(|&part| work.document.scene.parts[part].name.clone()))
-    }
-
-    fn set_point(&mut self, work: &Work, pen: Point) -> Outcome {
-        let sketch = self.sketch.take().filter(|sketch| sketch.frame == work.frame);
-        let mut sketch = sketch.unwrap_or(Sketch { frame: work.frame, points: Vec::new(), pen });
-        let near = |at: Option<&Point>| at.is_some_and(|at| work.lens.distance(*at, pen) <= hit::NEAR_POINT);
-        let ends = if work.closed {
-            sketch.points.len() > 2 && near(sketch.points.first())
-        } else {
-            sketch.points.len() > 1 && near(sketch.points.last())
-        };
-        if ends {
-            return self.finish(work, sketch.points);
-        }
-        // A double click sets one point.
-        if !near(sketch.points.last()) || sketch.points.is_empty() {
-            sketch.points.push(pen);
-        }
-        sketch.pen = pen;
-        self.sketch = Some(sketch);
-        Outcome::Shown
-    }
-
-    fn finish(&mut self, work: &Work, points: Vec<Point>) -> Outcome {
-        let mut document = work.document.clone();
-        match contour::draw(&mut document, work.frame, work.name, points, work.closed, work.tool != Tool::Freehand) {
-            Ok(part) => {
-                self.select(Selection::part(part, &document.scene), &document.scene);
-                Outcome::Edited(Edit { label: "Draw contour", document })
-            }
-            Err(refused) => Outcome::Refused(refused),
-        }
     }
 
     /// The pen moves.
@@ -386,10 +370,10 @@ impl Editor {
             return Outcome::Shown;
         }
         match grip {
-            Grip::Stroke => {
-                let stroke = self.sketch.take().map(|sketch| sketch.points).unwrap_or_default();
-                self.finish(work, contour::simplified(&stroke, work.closed, &work.lens))
-            }
+            Grip::Stroke => match self.sketch.take() {
+                Some(stroke) => self.finish(work, stroke),
+                None => Outcome::Shown,
+            },
             Grip::Box if moved => self.select_box(work, corners),
             Grip::Box => self.select_inside(work, pen),
             Grip::Points | Grip::Feather(_) if !moved => self.selected(work),
@@ -411,7 +395,7 @@ impl Editor {
         let complete = |part: &usize| self.selection.of_part(*part).len() == scene.parts[*part].point_count();
         let whole: BTreeSet<usize> = self.selection.parts().into_iter().filter(complete).collect();
         let whole = if transform.is_shift() { whole } else { BTreeSet::new() };
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match change::move_points(&mut document, work.frame, &moved, &whole) {
             Ok(true) => Outcome::Edited(Edit { label, document }),
             Ok(false) => Outcome::Shown,
@@ -439,7 +423,7 @@ impl Editor {
                     return Outcome::Refused(refused);
                 }
                 if let Some(sketch) = self.sketch.take_if(|sketch| sketch.frame == work.frame) {
-                    return self.finish(work, sketch.points);
+                    return self.finish(work, sketch);
                 }
             }
             Key::Back if self.sketch.is_some() => {
@@ -466,5 +450,6 @@ impl Editor {
 
 mod on_selection;
 mod selecting;
+mod sketching;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,9 @@
 
 use super::Refused;
 use super::change::has_limbs;
+use crate::roto::parts::selected;
 use rototoon::project::Document;
+use rototoon::scene::Part;
 
 /// Renames a part. The name must be free.
 pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Refused> {
@@ -11,11 +13,7 @@ pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Re
     if name.is_empty() {
         return Err(Refused::new("write the new name in New name first"));
     }
-    if name.contains([',', '*']) {
-        return Err(Refused::new(format!(
-            "New name: found {name:?}, expected a name without \",\" and \"*\", which lists of parts need"
-        )));
-    }
+    check(name, "New name")?;
     if document.scene.parts.iter().any(|part| part.name == name) {
         return Err(Refused::new(format!("a part has the name {name:?} already")));
     }
@@ -26,10 +24,26 @@ pub fn rename(document: &mut Document, part: usize, name: &str) -> Result<(), Re
     Ok(())
 }
 
-/// A list of names with commas, with another name for a part. Patterns with `*` stay.
-pub fn in_list(list: &str, old: &str, new: &str) -> String {
+/// Refuses the name of a new part that lists of parts cannot have. `field` names the parameter with it.
+pub fn check(name: &str, field: &str) -> Result<(), Refused> {
+    if name.contains([',', '*']) {
+        return Err(Refused::new(format!(
+            "{field}: found {name:?}, expected a name without \",\" and \"*\", which lists of parts need"
+        )));
+    }
+    Ok(())
+}
+
+/// A list of names with commas, with another name for a part. `parts` have their names before that. Patterns with `*` stay. An entry that
+/// names several parts, which differ by blanks at their ends, names the renamed one beside them.
+pub fn in_list(list: &str, parts: &[Part], old: &str, new: &str) -> String {
     let renamed = |entry: &str| {
-        if entry.trim() == old { entry.replacen(old, new, 1) } else { entry.to_owned() }
+        let name = entry.trim();
+        let meant = selected(parts, name).0;
+        if name.is_empty() || name != old && name.contains('*') || !meant.iter().any(|part| parts[*part].name == old) {
+            return entry.to_owned();
+        }
+        if meant.len() == 1 { entry.replacen(name, new, 1) } else { format!("{entry}, {new}") }
     };
     list.split(',').map(renamed).collect::<Vec<_>>().join(",")
 }
@@ -37,7 +51,7 @@ pub fn in_list(list: &str, old: &str, new: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rototoon::scene::{Footage, Part, Scene};
+    use rototoon::scene::{Footage, Scene};
 
     #[test]
     fn a_name_is_free_and_not_empty() {
@@ -57,7 +71,16 @@ mod tests {
 
     #[test]
     fn lists_name_the_part_by_its_new_name() {
-        assert_eq!(in_list("arm, far arm,arm *", "arm", "hand"), "hand, far arm,arm *");
-        assert_eq!(in_list("", "arm", "hand"), "");
+        let parts = |names: &[&str]| {
+            names.iter().map(|&name| Part { name: name.into(), ..Part::default() }).collect::<Vec<_>>()
+        };
+        let arms = parts(&["arm", "far arm", "arm *"]);
+        assert_eq!(in_list("arm, far arm,arm *", &arms, "arm", "hand"), "hand, far arm,arm *");
+        assert_eq!(in_list("", &arms, "arm", "hand"), "");
+        // Lists name parts without the blanks at their ends.
+        let blank = parts(&["arm ", "leg"]);
+        assert_eq!(in_list(" arm ,leg, a*", &blank, "arm ", "hand"), " hand ,leg, a*");
+        assert_eq!(in_list("arm", &parts(&["arm", "arm "]), "arm ", "hand"), "arm", "it names the other one");
+        assert_eq!(in_list("arm,leg", &parts(&[" arm", "arm "]), "arm ", "hand"), "arm, hand,leg");
     }
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iostream>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ namespace rototoon_host {
 struct Track {
   std::vector<double> value;
   std::map<double, std::vector<double>> keys;
+  // The keys whose values are held until the next one. Others are interpolated linearly.
+  std::set<double> held;
 
   std::vector<double> at(double time) const {
     if (keys.empty()) return value;
@@ -23,6 +26,7 @@ struct Track {
     if (after == keys.end()) return keys.rbegin()->second;
     if (after == keys.begin() || after->first == time) return after->second;
     auto before = std::prev(after);
+    if (held.count(before->first)) return before->second;
     double share = (time - before->first) / (after->first - before->first);
     std::vector<double> mixed;
     for (size_t i = 0; i < before->second.size(); ++i)
@@ -55,6 +59,7 @@ public:
     remember();
     if (track.keys.size() == 1) track.value = track.keys.begin()->second;
     track.keys.erase(time);
+    track.held.erase(time);
     return kOfxStatOK;
   }
   OfxStatus deleteAllKeys() override {
@@ -62,6 +67,7 @@ public:
     // As in real hosts, the parameter keeps the value that it had.
     if (!track.keys.empty()) track.value = track.keys.begin()->second;
     track.keys.clear();
+    track.held.clear();
     return kOfxStatOK;
   }
 

@@ -36,6 +36,11 @@ void Effect::set_numbers_at(rust::Str name, double time, rust::Slice<const doubl
   if (Numbers *param = numbers_of(*impl, name)) param->track.keys[time].assign(values.begin(), values.end());
 }
 
+void Effect::hold_keys(rust::Str name) {
+  if (Numbers *param = numbers_of(*impl, name))
+    for (const auto &key : param->track.keys) param->track.held.insert(key.first);
+}
+
 rust::Vec<double> Effect::key_times(rust::Str name) const {
   rust::Vec<double> times;
   if (Numbers *param = numbers_of(*impl, name))

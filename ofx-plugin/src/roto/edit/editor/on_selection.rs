@@ -23,7 +23,7 @@ impl Editor {
             Ok(parts) => parts,
             Err(refused) => return Outcome::Refused(refused),
         };
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         // From the last part to the first, so that indices stay valid.
         for part in parts.into_iter().rev() {
             let chosen = self.selection.of_part(part);
@@ -47,7 +47,7 @@ impl Editor {
             Ok(parts) => parts,
             Err(refused) => return Outcome::Refused(refused),
         };
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         let mut new = Vec::new();
         for part in parts {
             let chosen = self.selection.of_part(part);
@@ -79,7 +79,7 @@ impl Editor {
             let smoothed = change::smoothed(&scene.parts[part], work.frame, &self.selection.of_part(part));
             moved.extend(smoothed.into_iter().map(|(point, to)| (Place { part, point }, to)));
         }
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match change::move_points(&mut document, work.frame, &moved, &BTreeSet::new()) {
             Ok(true) => Outcome::Edited(Edit { label: "Smooth points", document }),
             Ok(false) => Outcome::Refused(Refused::new("select points of a shape on this frame first")),
@@ -97,7 +97,7 @@ impl Editor {
         if places.is_empty() {
             return Outcome::Refused(Refused::new("select points first"));
         }
-        let mut document = work.document.clone();
+        let mut document = work.draft();
         match feather::set(&mut document, &places, width) {
             Ok(true) => Outcome::Edited(Edit { label: "Feather points", document }),
             Ok(false) => Outcome::Shown,

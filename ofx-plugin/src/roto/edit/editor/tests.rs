@@ -34,7 +34,16 @@ fn document() -> Document {
 
 fn work(document: &Document) -> Work<'_> {
     let lens = Lens::new(p(1.0, 1.0));
-    Work { document, frame: FRAME, parts: &[0, 1], lens, tool: Tool::Select, closed: true, name: "" }
+    Work {
+        document,
+        frame: FRAME,
+        parts: &[0, 1],
+        lens,
+        tool: Tool::Select,
+        closed: true,
+        name: "",
+        reach: Reach::default(),
+    }
 }
 
 fn drag(editor: &mut Editor, work: &Work, from: Point, to: Point) -> Outcome {
@@ -126,29 +135,101 @@ fn drawn_contours_are_new_parts_or_keys() {
 }
 
 #[test]
-fn wrong_contours_are_refused_and_unfinished_ones_dropped() {
+fn wrong_contours_are_refused_and_stay_until_they_are_finished_or_dropped() {
     let document = document();
     let (mut editor, mut work) = (Editor::default(), work(&document));
     work.tool = Tool::Contour;
     editor.down(&work, p(10.0, 10.0));
     editor.down(&work, p(60.0, 60.0));
     assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(text) if text.0.contains("at least 3")));
-    editor.down(&work, p(10.0, 10.0));
-    assert!(matches!(editor.key(&work, Key::Back), Outcome::Shown));
+    assert_eq!(editor.sketch(FRAME).unwrap().points, [p(10.0, 10.0), p(60.0, 60.0)]);
+    for _ in 0..2 {
+        assert!(matches!(editor.key(&work, Key::Back), Outcome::Shown));
+    }
     assert_eq!(editor.sketch(FRAME), None);
     editor.down(&work, p(10.0, 10.0));
     assert!(matches!(editor.key(&work, Key::Escape), Outcome::Shown));
+    assert_eq!(editor.sketch(FRAME), None);
     work.frame = 400;
     for at in [p(10.0, 10.0), p(60.0, 60.0), p(90.0, 10.0)] {
         editor.down(&work, at);
     }
     assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(text) if text.0.contains("frame 400 is outside")));
+    assert_eq!(editor.sketch(400).map(|sketch| sketch.points.len()), Some(3));
+    editor.key(&work, Key::Escape);
     (work.frame, work.name, work.closed) = (FRAME, "square", false);
     editor.down(&work, p(10.0, 10.0));
     editor.down(&work, p(60.0, 60.0));
     assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(text) if text.0.contains("is closed")));
     work.tool = Tool::Off;
     assert!(matches!(editor.down(&work, p(30.0, 30.0)), Outcome::Ignored));
+}
+
+#[test]
+fn a_refused_contour_is_finished_when_the_message_is_followed() {
+    let document = document();
+    let mut work = Work { name: "line", ..work(&document) };
+    let corners = [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)];
+    let refused = |outcome| matches!(outcome, Outcome::Refused(text) if text.0.contains("switch Closed off"));
+    for tool in [Tool::Contour, Tool::Freehand] {
+        let mut editor = Editor::default();
+        (work.tool, work.name, work.closed) = (tool, "line", true);
+        if tool == Tool::Contour {
+            corners.iter().for_each(|&at| drop(editor.down(&work, at)));
+            assert!(refused(editor.down(&work, corners[0])));
+        } else {
+            editor.down(&work, corners[0]);
+            (0..60).for_each(|k| {
+                drop(editor.move_to(&work, corners[k / 20].lerp(corners[(k / 20 + 1) % 3], (k % 20) as f64 / 20.0)))
+            });
+            assert!(refused(editor.up(&work, corners[0])));
+        }
+        // As an open contour it is a key of the line, and with New part a part of its own.
+        let mut other = editor.clone();
+        work.closed = false;
+        assert!(edited(other.key(&work, Key::Enter)).scene.parts[1].keys.contains_key(&FRAME));
+        (work.name, work.closed) = ("", true);
+        let drawn = edited(editor.key(&work, Key::Enter));
+        let part = &drawn.scene.parts[2];
+        assert!(part.closed && corners.iter().all(|at| part.keys[&FRAME].iter().any(|p| p.distance(*at) < 12.0)));
+        assert_eq!(editor.sketch(FRAME), None, "nothing is left");
+    }
+    // A click with the freehand tool is no stroke.
+    let mut editor = Editor::default();
+    assert!(matches!(drag(&mut editor, &work, corners[0], corners[0]), Outcome::Refused(_)));
+    assert_eq!(editor.sketch(FRAME), None);
+}
+
+#[test]
+fn a_new_part_lies_in_front_of_parts_that_are_nearer_on_some_frames() {
+    let mut document = document();
+    document.scene.parts[0].depths = [(0, 7.5), (3, -2.0)].into();
+    let mut work = work(&document);
+    (work.tool, work.frame) = (Tool::Contour, 0);
+    let mut editor = Editor::default();
+    [p(100.0, 40.0), p(140.0, 40.0), p(120.0, 80.0)].iter().for_each(|&at| drop(editor.down(&work, at)));
+    assert_eq!(edited(editor.key(&work, Key::Enter)).scene.parts[2].depth, 8.0);
+}
+
+#[test]
+fn a_new_part_has_a_name_that_lists_can_have() {
+    let mut document = document();
+    document.scene.parts[1].name = "arm, left".into();
+    let (mut editor, mut work) = (Editor::default(), work(&document));
+    for name in ["arm, right", "arm*"] {
+        for tool in [Tool::Contour, Tool::Freehand] {
+            (work.tool, work.name) = (tool, name);
+            let refused = editor.down(&work, p(10.0, 10.0));
+            assert!(matches!(refused, Outcome::Refused(text) if text.0.starts_with("Part: found")), "{name}");
+        }
+    }
+    // A part that the document has is drawn whatever its name. A contour that is begun stays until the name is another one.
+    (work.tool, work.name, work.closed) = (Tool::Contour, "arm, left", false);
+    [p(100.0, 40.0), p(140.0, 40.0)].iter().for_each(|&at| drop(editor.down(&work, at)));
+    work.name = "arm*";
+    assert!(matches!(editor.key(&work, Key::Enter), Outcome::Refused(_)));
+    work.name = "arm, left";
+    assert_eq!(edited(editor.key(&work, Key::Enter)).scene.parts.len(), 2);
 }
 
 #[test]
@@ -288,6 +369,9 @@ fn handles_scale_and_a_drag_over_a_change_of_frame_is_dropped() {
     let points = &scaled.scene.parts[0].tracks[&2];
     assert!(points[2].distance(p(70.0, 70.0)) < 1e-9 && points[0].distance(p(30.0, 30.0)) < 1e-9, "{points:?}");
     assert_eq!(scaled.scene.parts[0].pins[&2].len(), 3, "the corner that stays is not pinned");
+    // A click on a handle that trembles is no edit.
+    assert!(matches!(drag(&mut editor, &work, corner, corner + p(1.2, 1.2)), Outcome::Shown));
+    assert_eq!(editor.selection.len(), 4);
     editor.selection = Selection::default();
     editor.down(&work, p(30.0, 30.0));
     editor.move_to(&work, p(5.0, 5.0));
