@@ -50,7 +50,9 @@ impl<'a> Choice<'a> {
                 models: pooled.models.as_deref()?,
             })
         };
-        let contenders: Vec<Contender> = free.iter().filter_map(contender).collect();
+        let mut named: Vec<(usize, Contender)> = free.iter().filter_map(|m| Some((*m, contender(m)?))).collect();
+        named.sort_by(|(_, a), (_, b)| a.order(b));
+        let (free, contenders): (Vec<usize>, Vec<Contender>) = named.into_iter().unzip();
         let jump = if mechanisms.has(Mechanism::Jumps) { jumps::measured(&contenders) } else { 0.0 };
         Self { members, free, contenders, jump, mechanisms }
     }

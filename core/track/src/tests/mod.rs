@@ -8,6 +8,7 @@ mod cached;
 mod holds;
 mod limbs;
 mod memory;
+mod order;
 mod outward;
 mod progress;
 mod remembered;

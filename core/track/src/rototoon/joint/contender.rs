@@ -5,6 +5,7 @@ use crate::rototoon::propagate::Model;
 use crate::shared::drawings::{Drawing, gaps, shown};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Span};
+use std::cmp::Ordering;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -70,6 +71,25 @@ impl Contender<'_> {
             return None;
         }
         shown(self.drawings, [first, last].map(|frame| (frame - self.span.first) as usize))
+    }
+
+    /// The order of contenders: from near to far, then by span, then by what is drawn on their keys. Two that are equal in all are
+    /// the same.
+    pub fn order(&self, other: &Self) -> Ordering {
+        let places = |contender: &Self| -> Vec<f64> {
+            contender.keys().into_iter().flatten().flat_map(|point| [point.x, point.y]).collect()
+        };
+        let by_places = || {
+            let (own, theirs) = (places(self), places(other));
+            let differs = own.iter().zip(&theirs).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
+            differs.unwrap_or(own.len().cmp(&theirs.len()))
+        };
+        other.depth.total_cmp(&self.depth).then(self.span.cmp(&other.span)).then_with(by_places)
+    }
+
+    /// The first frame of each drawing.
+    pub fn frames(&self) -> impl Iterator<Item = FrameNumber> {
+        (0..self.drawings.len()).map(|d| self.frame_of(d))
     }
 
     /// First frame of a drawing.

@@ -13,6 +13,10 @@
 //! drawings. Dynamic programming finds the best paths of a move, and the move is made only if E falls. Moves of two
 //! parts let crossing twins swap places.
 //!
+//! What moves reach depends on which part moves first. So all moves are made twice from the same start, from the nearest part to
+//! the farthest and the other way round, and the paths of less energy are taken. The contenders come in an order of their own
+//! ([`Contender::order`]), so the order in which a document lists its parts changes nothing.
+//!
 //! Limits: the result is a local minimum with respect to these moves. Parts that are keyed on different frames move
 //! singly only.
 
@@ -34,13 +38,14 @@ mod tables;
 #[cfg(test)]
 mod tests;
 pub mod tie;
+mod twins;
 
 pub use contender::Contender;
 
 use companion::{Companions, Pair};
 use figure::Figure;
 use figure::canvas::Canvas;
-use moves::{Changes, Move, Proposal, Table};
+use moves::{Changes, LEAST_GAIN, Move, Proposal, Table};
 use rayon::prelude::{IntoParallelRefIterator, ParallelIterator};
 use shadow::{Memory, Shadows};
 use std::collections::BTreeMap;
@@ -69,13 +74,13 @@ pub fn choose(
     contenders: &[Contender],
     bonds: &Bonds,
     jump: f64,
-    (mut paths, free): (Vec<Vec<usize>>, &[bool]),
+    (start, free): (Vec<Vec<usize>>, &[bool]),
     memory: &mut Memory,
 ) -> Vec<Vec<usize>> {
     let shadows = Shadows::cast(contenders, memory);
     let figure = bonds.canvas.as_ref().map(|canvas| Figure::new(canvas, contenders, memory));
     if shadows.none() && bonds.ties.is_empty() && bonds.companions.is_empty() && jump == 0.0 && figure.is_none() {
-        return paths;
+        return start;
     }
     let companions = Companions::new(contenders, &bonds.companions);
     let (ties, figure) = (&bonds.ties[..], figure.as_ref());
@@ -89,11 +94,26 @@ pub fn choose(
         .map(|c| vec![c])
         .chain(pairs.into_iter().filter(|&(far, near)| same(far, near)).map(|(far, near)| vec![far, near]))
         .filter(|who| who.iter().all(|&c| free[c]));
-    let mut moves: Vec<Move> = moves.map(|who| Move::new(&scene, who)).collect();
+    let moves: Vec<Vec<usize>> = moves.collect();
+    let [forwards, backwards] = [false, true].map(|reverse| {
+        let mut order = moves.clone();
+        if reverse {
+            // Moves of one part still come before those of two.
+            order.reverse();
+            order.sort_by_key(Vec::len);
+        }
+        moved(&scene, order, start.clone())
+    });
+    if scene.gain(&forwards, &backwards) > LEAST_GAIN { backwards } else { forwards }
+}
+
+/// The paths after rounds of moves in this order.
+fn moved(scene: &cost::Scene, order: Vec<Vec<usize>>, mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    let mut moves: Vec<Move> = order.into_iter().map(|who| Move::new(scene, who)).collect();
     let mut changed = Changes::none(&paths);
     for _ in 0..ROUNDS {
         let before = changed.count;
-        round(&scene, &mut moves, &mut paths, &mut changed);
+        round(scene, &mut moves, &mut paths, &mut changed);
         if changed.count == before {
             break;
         }

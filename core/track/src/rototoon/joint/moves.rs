@@ -12,10 +12,12 @@ use super::tie::overlap;
 use crate::rototoon::select::{Candidate, path_of_least_cost};
 use std::sync::Arc;
 
-/// Hypotheses per part and drawing that a move of two parts considers.
+/// Hypotheses per part and drawing that a move of two parts considers, and that a move of two that look alike does: such parts may
+/// have to change places on many drawings at once, and their places on the other one's are not always among the few of least energy.
 const STATES: usize = 6;
+const STATES_OF_TWINS: usize = 10;
 /// Smaller gains are rounding errors.
-const LEAST_GAIN: f64 = 1e-9;
+pub(super) const LEAST_GAIN: f64 = 1e-9;
 
 /// A move: new paths for one contender or for two.
 pub struct Move {
@@ -23,6 +25,8 @@ pub struct Move {
     pub who: Vec<usize>,
     /// The contenders whose choices the result depends on, with those of the move itself.
     pub seen: Vec<usize>,
+    /// How many hypotheses of each contender it considers on a drawing. `None`: all.
+    most: Option<usize>,
     /// The number of changes when the move was last tried.
     pub tried: Option<usize>,
     /// By drawing: the costs that were found last.
@@ -75,7 +79,12 @@ impl Changes {
 impl Move {
     /// A move of these contenders that was not tried yet.
     pub fn new(scene: &Scene, who: Vec<usize>) -> Self {
-        Self { seen: scene.seen_by(&who), who, tried: None, tables: Vec::new() }
+        let most = match who[..] {
+            [a, b] if scene.are_twins(a, b) => Some(STATES_OF_TWINS),
+            [_, _] => Some(STATES),
+            _ => None,
+        };
+        Self { seen: scene.seen_by(&who), who, most, tried: None, tables: Vec::new() }
     }
 }
 
@@ -84,7 +93,7 @@ impl Scene<'_> {
     /// by drawing.
     pub fn proposal(&self, of: &Move, paths: &Paths, changes: &Changes) -> (Option<Proposal>, Vec<Arc<Table>>) {
         let table = |d: usize| {
-            let states: Vec<Vec<usize>> = of.who.iter().map(|&c| self.states(of.who.len(), c, d, paths)).collect();
+            let states: Vec<Vec<usize>> = of.who.iter().map(|&c| self.states(of.most, (c, d), paths)).collect();
             let known =
                 of.tables.get(d).filter(|known| known.states == states && !self.differs(of, (d, known.at), changes));
             known.cloned().unwrap_or_else(|| {
@@ -192,16 +201,13 @@ impl Scene<'_> {
         table
     }
 
-    /// The hypotheses of a drawing that a move of so many parts considers: all for one part, and else those of least energy and
-    /// the present one.
-    fn states(&self, parts: usize, c: usize, d: usize, paths: &Paths) -> Vec<usize> {
+    /// Hypotheses of a drawing: all, or at most so many, which are those of least energy and the present one.
+    fn states(&self, most: Option<usize>, (c, d): State, paths: &Paths) -> Vec<usize> {
         let pool = &self.contenders[c].pools[d];
-        if parts == 1 {
-            return (0..pool.len()).collect();
-        }
+        let Some(most) = most else { return (0..pool.len()).collect() };
         let mut order: Vec<usize> = (0..pool.len()).filter(|&h| h != paths[c][d]).collect();
         order.sort_by(|&a, &b| pool[a].pose.energy.total_cmp(&pool[b].pose.energy));
-        order.truncate(STATES - 1);
+        order.truncate(most - 1);
         order.push(paths[c][d]);
         order
     }

@@ -99,6 +99,19 @@ impl Figure {
         WEIGHT * (unexplained / rest.area).min(1.0)
     }
 
+    /// Cost of what the paths leave of the figure on a frame, where the contenders in `who` are those that move.
+    pub fn on_frame(&self, contenders: &[Contender], (who, frame): (&[usize], FrameNumber), paths: &Paths) -> f64 {
+        let states = (0..contenders.len()).filter_map(|k| {
+            let d = contenders[k].drawing_at(frame)?;
+            Some((k, (d, paths[k][d])))
+        });
+        let left = self.left(frame, states).count();
+        let here = || who.iter().copied().filter(|&c| contenders[c].drawing_at(frame).is_some());
+        let area = here().map(|c| self.areas[c]).fold(f64::INFINITY, f64::min);
+        let usual = here().map(|c| self.usual[c]).max().unwrap_or(0);
+        WEIGHT * (left.saturating_sub(usual) as f64 / area).min(1.0)
+    }
+
     /// Which blocks each part covers on these paths.
     pub fn claims(&self, contenders: &[Contender], names: &[&str], paths: &Paths) -> Claims {
         let mut parts: BTreeMap<String, BTreeMap<FrameNumber, Blocks>> = BTreeMap::new();
