@@ -27,6 +27,23 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 import sys
 
 
+def _refuse_second_copy():
+    """Raises an error while another copy of the extension is switched on, from another repository.
+
+    Blender would take the classes of both for one, and call the handlers of both: paths of footage would be changed twice at each save.
+    """
+    import bpy
+
+    place = ".capture.operators.track"
+    operator = getattr(bpy.types, "ROTOTOON_OT_track", None)
+    other = getattr(operator, "__module__", __package__ + place).removesuffix(place)
+    if other != __package__:
+        repository = other.removeprefix("bl_ext.").partition(".")[0]
+        raise RuntimeError(
+            f'Rototoon is switched on already, from the repository "{repository}": switch that copy off first, or remove one of the two'
+        )
+
+
 def _forget_older_package():
     """Forgets the package `rototoon` of an earlier version, so that an update takes effect while Blender runs.
 
@@ -41,6 +58,8 @@ def _forget_older_package():
     rototoon.of_extension = True
 
 
+# Before anything is taken from the other copy.
+_refuse_second_copy()
 _forget_older_package()
 
 
@@ -66,6 +85,7 @@ def register():
     """Called by Blender."""
     import bpy
 
+    _refuse_second_copy()
     from . import handlers, properties, ui
 
     for cls in _classes():
@@ -88,6 +108,8 @@ def unregister():
     handlers.unregister()
     properties.detach()
     for cls in reversed(_classes()):
-        bpy.utils.unregister_class(cls)
+        # A copy of an earlier version, which did not look for this one, may have taken the class's place.
+        if cls.is_registered:
+            bpy.utils.unregister_class(cls)
     # So an update can replace the library's file on Windows too. While a job or a script uses the library, it stays.
     library.release()
