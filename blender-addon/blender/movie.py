@@ -33,6 +33,8 @@ _NAME = re.compile(rf"[0-9a-f]{{24}}(\.[0-9a-f]{{12}}{re.escape(_UNFINISHED)})?"
 _FILE = re.compile(rf"frame_[0-9]{{6,}}\.png|{re.escape(_FACTS)}")
 _RECENT = 24 * 3600
 """Seconds for which a movie counts as in use after its last use."""
+_NOTED = 3600
+"""Seconds between two notes of a movie's use: a disk of a network need not be asked more often."""
 
 
 @dataclass(frozen=True)
@@ -65,10 +67,11 @@ def cached(path: str, cache: str) -> Movie | None:
 
 
 def mark_used(folders: Iterable[str]) -> None:
-    """Notes that movies are in use. A folder that is gone, or belongs to somebody else, stays as it is."""
+    """Notes that movies are in use, at most once an hour. A folder that is gone, or belongs to somebody else, stays as it is."""
     for folder in folders:
         with contextlib.suppress(OSError):
-            os.utime(folder)
+            if abs(time.time() - os.stat(folder).st_mtime) > _NOTED:
+                os.utime(folder)
 
 
 def extract(path: str, cache: str) -> Iterator[float]:

@@ -323,6 +323,21 @@ def test_an_opened_file_marks_its_movie_as_used(addon, tmp_path):
     assert folder.stat().st_mtime > 1_000_000
 
 
+def test_work_on_a_movie_marks_it_as_used(addon, fake, movie_shot, tmp_path):
+    """A file may be open for days; another Blender that shares the cache must not remove its pictures meanwhile."""
+    shots.draw(addon, movie_shot, 1, [shots.diamond(0)])
+    shots.draw(addon, movie_shot, 9, [shots.diamond(8)])
+    folder = next((tmp_path / "cache").iterdir())
+    blend = str(tmp_path / "shot.blend")
+    for work in (bpy.ops.rototoon.track, lambda: bpy.ops.wm.save_as_mainfile(filepath=blend)):
+        os.utime(folder, (1_000_000, 1_000_000))
+        assert work() == {"FINISHED"}
+        noted = folder.stat().st_mtime_ns
+        assert noted > 1_000_000 * 10**9
+        bpy.ops.wm.save_as_mainfile(filepath=blend)
+        assert folder.stat().st_mtime_ns == noted, "once an hour is enough"
+
+
 def test_a_scene_with_other_footage_keeps_its_size_and_says_so(addon, tmp_path):
     shots.set_up(tmp_path)
     shots.write_png(tmp_path / "wide_1.png", np.zeros((80, 200, 3), np.uint8))
