@@ -21,7 +21,7 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `ui`                  panels, lists, overlays, preferences
 ====================  ==============================================================================
 
-`properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed.
+`properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed. `build` says which build it is.
 """
 
 import sys
@@ -44,23 +44,42 @@ def _refuse_second_copy():
         )
 
 
-def _forget_older_package():
-    """Forgets the package `rototoon` of an earlier version, so that an update takes effect while Blender runs.
+def _forget_older_modules():
+    """Forgets modules of an earlier version, so that an update takes effect while Blender runs.
 
-    Blender imports this file once, and again after an update. It forgets the extension's own modules then, but not those of a wheel.
+    Blender imports this file once, and again after an update. It forgets the extension's own modules then, but not if that version could not be
+    switched on, and never those of a wheel, the package `rototoon`.
     """
-    earlier = sys.modules.get("rototoon")
-    if getattr(earlier, "of_extension", False):
-        for name in [name for name in sys.modules if name.partition(".")[0] == "rototoon"]:
+    is_own = getattr(sys.modules.get("rototoon"), "of_extension", False)
+    for name in list(sys.modules):
+        if name.startswith(f"{__package__}.") or (is_own and name.partition(".")[0] == "rototoon"):
             del sys.modules[name]
     import rototoon
 
     rototoon.of_extension = True
+    _need_same_build(rototoon)
+
+
+def _need_same_build(package):
+    """Raises an error if the Python package is of another build, which may know other functions, or find other contours without a word.
+
+    A script may have imported its own before, or one is found earlier on the search path; or Blender could not replace an older one, whose library runs.
+    """
+    from pathlib import Path
+
+    from .build import BUILD
+
+    found = getattr(package, "__version__", "an earlier one")
+    if found != BUILD:
+        raise RuntimeError(
+            f"The extension is Rototoon {BUILD}, but the Python package in {Path(package.__file__).parent} is of another build, {found}: restart Blender. "
+            "If it says this again, remove that package, or take its folder off PYTHONPATH"
+        )
 
 
 # Before anything is taken from the other copy.
 _refuse_second_copy()
-_forget_older_package()
+_forget_older_modules()
 
 
 def _classes():
