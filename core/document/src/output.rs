@@ -10,6 +10,7 @@
 //! removes such files if they are more than an hour old.
 
 use crate::path::{real, slashed};
+use crate::rights;
 use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -83,8 +84,8 @@ fn write(path: &Path, bytes: &[u8], flush: bool, is_changed: &dyn Fn() -> bool) 
         _ => {}
     }
     let target = if existing.is_some() { real(path)? } else { resolved(&end_of_links(path)?)? };
-    if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
-        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+    if let Some(data) = &existing {
+        rights::check(&target, data)?;
     }
     let folder = parent(&target);
     there(folder)?;
@@ -99,7 +100,7 @@ fn write(path: &Path, bytes: &[u8], flush: bool, is_changed: &dyn Fn() -> bool) 
     let file = Unfinished::new(&builder, folder).map_err(nameless)?;
     file.as_file().write_all(bytes)?;
     if let Some(data) = existing {
-        file.as_file().set_permissions(data.permissions())?;
+        rights::keep(file.as_file(), &data)?;
     }
     if flush {
         file.as_file().sync_all()?;
@@ -159,10 +160,10 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let probe = || match fs::metadata(path) {
         Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder, expected a file")),
         Ok(data) if !data.is_file() => Ok(()),
-        Ok(data) if data.permissions().readonly() => {
-            Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"))
+        Ok(data) => {
+            rights::check(path, &data)?;
+            tempfile::tempfile_in(parent(&real(path)?)).map(drop)
         }
-        Ok(_) => tempfile::tempfile_in(parent(&real(path)?)).map(drop),
         // A name that is too long, or a folder that may not be entered.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         Err(_) => {
