@@ -21,27 +21,65 @@ This file only registers. The code is in packages. The `__init__.py` of each pac
 `ui`                  panels, lists, overlays, preferences
 ====================  ==============================================================================
 
-`properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed.
+`properties` puts the properties of the packages together. `handlers` runs when files are opened, saved and changed. `build` says which build it is.
 """
 
 import sys
 
 
-def _forget_older_package():
-    """Forgets the package `rototoon` of an earlier version, so that an update takes effect while Blender runs.
+def _refuse_second_copy():
+    """Raises an error while another copy of the extension is switched on, from another repository.
 
-    Blender imports this file once, and again after an update. It forgets the extension's own modules then, but not those of a wheel.
+    Blender would take the classes of both for one, and call the handlers of both: paths of footage would be changed twice at each save.
     """
-    earlier = sys.modules.get("rototoon")
-    if getattr(earlier, "of_extension", False):
-        for name in [name for name in sys.modules if name.partition(".")[0] == "rototoon"]:
+    import bpy
+
+    place = ".capture.operators.track"
+    operator = getattr(bpy.types, "ROTOTOON_OT_track", None)
+    other = getattr(operator, "__module__", __package__ + place).removesuffix(place)
+    if other != __package__:
+        repository = other.removeprefix("bl_ext.").partition(".")[0]
+        raise RuntimeError(
+            f'Rototoon is switched on already, from the repository "{repository}": switch that copy off first, or remove one of the two'
+        )
+
+
+def _forget_older_modules():
+    """Forgets modules of an earlier version, so that an update takes effect while Blender runs.
+
+    Blender imports this file once, and again after an update. It forgets the extension's own modules then, but not if that version could not be
+    switched on, and never those of a wheel, the package `rototoon`.
+    """
+    is_own = getattr(sys.modules.get("rototoon"), "of_extension", False)
+    for name in list(sys.modules):
+        if name.startswith(f"{__package__}.") or (is_own and name.partition(".")[0] == "rototoon"):
             del sys.modules[name]
     import rototoon
 
     rototoon.of_extension = True
+    _need_same_build(rototoon)
 
 
-_forget_older_package()
+def _need_same_build(package):
+    """Raises an error if the Python package is of another build, which may know other functions, or find other contours without a word.
+
+    A script may have imported its own before, or one is found earlier on the search path; or Blender could not replace an older one, whose library runs.
+    """
+    from pathlib import Path
+
+    from .build import BUILD
+
+    found = getattr(package, "__version__", "an earlier one")
+    if found != BUILD:
+        raise RuntimeError(
+            f"The extension is Rototoon {BUILD}, but the Python package in {Path(package.__file__).parent} is of another build, {found}: restart Blender. "
+            "If it says this again, remove that package, or take its folder off PYTHONPATH"
+        )
+
+
+# Before anything is taken from the other copy.
+_refuse_second_copy()
+_forget_older_modules()
 
 
 def _classes():
@@ -66,6 +104,7 @@ def register():
     """Called by Blender."""
     import bpy
 
+    _refuse_second_copy()
     from . import handlers, properties, ui
 
     for cls in _classes():
@@ -88,6 +127,8 @@ def unregister():
     handlers.unregister()
     properties.detach()
     for cls in reversed(_classes()):
-        bpy.utils.unregister_class(cls)
+        # A copy of an earlier version, which did not look for this one, may have taken the class's place.
+        if cls.is_registered:
+            bpy.utils.unregister_class(cls)
     # So an update can replace the library's file on Windows too. While a job or a script uses the library, it stays.
     library.release()

@@ -35,7 +35,8 @@ def _remember_parts() -> None:
 
 @persistent
 def _saving(path: str = "", *_args) -> None:
-    """Makes footage paths relative to the new place of the file, as Blender does with its own paths."""
+    """Makes footage paths relative to the new place of the file, as Blender does with its own paths. Movies of a file that is saved are in use."""
+    movie.mark_used(used_folders())
     if path:
         _rebase(bpy.data.filepath, path)
 

@@ -27,7 +27,8 @@ def attach() -> None:
 
 
 def detach() -> None:
-    """Removes both. The classes must still be registered."""
+    """Removes what is there of both. The classes must still be registered."""
     clip_browser.close()
-    del bpy.types.WindowManager.rototoon_clips
-    del bpy.types.Object.rototoon
+    for kind, name in ((bpy.types.WindowManager, "rototoon_clips"), (bpy.types.Object, "rototoon")):
+        if hasattr(kind, name):
+            delattr(kind, name)

@@ -37,14 +37,17 @@ def main(source: Path, target: Path, date: int) -> None:
     """Packs `source`. The zip appears whole or not at all."""
     files = sorted(of_zip(source) if zipfile.is_zipfile(source) else of_folder(source))
     unfinished = target.with_name(f"{target.name}.unfinished")
-    with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
-        for name, mode, data in files:
-            entry = zipfile.ZipInfo(name, time.gmtime(date)[:6])
-            entry.create_system = 3  # Unix: only then the mode is read
-            entry.external_attr = (stat.S_IFREG | mode) << 16
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            out.writestr(entry, data, compresslevel=9)
-    unfinished.replace(target)
+    try:
+        with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
+            for name, mode, data in files:
+                entry = zipfile.ZipInfo(name, time.gmtime(date)[:6])
+                entry.create_system = 3  # Unix: only then the mode is read
+                entry.external_attr = (stat.S_IFREG | mode) << 16
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                out.writestr(entry, data, compresslevel=9)
+        unfinished.replace(target)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 if __name__ == "__main__":

@@ -120,6 +120,8 @@ def pattern_of(ob) -> str:
     """
     import bpy
 
+    from . import movie
+
     settings = ob.rototoon
     if not settings.pattern:
         raise Problem("No footage chosen: choose it in the panel Footage")
@@ -133,6 +135,8 @@ def pattern_of(ob) -> str:
             if settings.movie:
                 return _of_movie(absolute(ob, settings.movie))
             raise Problem(f"No picture {path}: the footage was moved or renamed; choose it again in the panel Footage")
+    if settings.movie:
+        movie.mark_used([os.path.dirname(pattern)])
     return pattern
 
 

@@ -6,6 +6,9 @@ has another name, so an incomplete one is never used.
 
 Several Blenders may share a cache, also on several machines. Each makes frames in a folder of its own; the first that is ready gives
 it the movie's name. A movie that was used within a day is not removed, because another Blender may show it.
+
+The folder of the cache is chosen by the artist, who may have other things in it. So a folder belongs to the cache only if its name and all that
+it holds are as they are made here, and only such files are removed.
 """
 
 from __future__ import annotations
@@ -13,7 +16,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-import shutil
+import re
 import time
 import uuid
 from collections.abc import Iterable, Iterator
@@ -24,9 +27,14 @@ import bpy
 from .errors import Problem
 
 PICTURE = "frame_%06d.png"
+_FACTS = "movie.txt"
 _UNFINISHED = ".unfinished"
+_NAME = re.compile(rf"[0-9a-f]{{24}}(\.[0-9a-f]{{12}}{re.escape(_UNFINISHED)})?")
+_FILE = re.compile(rf"frame_[0-9]{{6,}}\.png|{re.escape(_FACTS)}")
 _RECENT = 24 * 3600
 """Seconds for which a movie counts as in use after its last use."""
+_NOTED = 3600
+"""Seconds between two notes of a movie's use: a disk of a network need not be asked more often."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +58,7 @@ def cached(path: str, cache: str) -> Movie | None:
     """The movie's frames if they are in the cache. Marks them as used."""
     folder = os.path.join(cache, key(path))
     try:
-        with open(os.path.join(folder, "movie.txt"), encoding="utf-8") as file:
+        with open(os.path.join(folder, _FACTS), encoding="utf-8") as file:
             last, fps = file.read().split()
     except (OSError, ValueError):
         return None
@@ -59,10 +67,11 @@ def cached(path: str, cache: str) -> Movie | None:
 
 
 def mark_used(folders: Iterable[str]) -> None:
-    """Notes that movies are in use. A folder that is gone, or belongs to somebody else, stays as it is."""
+    """Notes that movies are in use, at most once an hour. A folder that is gone, or belongs to somebody else, stays as it is."""
     for folder in folders:
         with contextlib.suppress(OSError):
-            os.utime(folder)
+            if abs(time.time() - os.stat(folder).st_mtime) > _NOTED:
+                os.utime(folder)
 
 
 def extract(path: str, cache: str) -> Iterator[float]:
@@ -82,7 +91,7 @@ def extract(path: str, cache: str) -> Iterator[float]:
             if not os.path.isfile(os.path.join(unfinished, PICTURE % number)):
                 raise Problem(f"Cannot write frame {number} of {path} to {unfinished}: is the disk full?")
             yield number / count
-        with open(os.path.join(unfinished, "movie.txt"), "w", encoding="utf-8") as file:
+        with open(os.path.join(unfinished, _FACTS), "w", encoding="utf-8") as file:
             file.write(f"{count} {fps!r}\n")
         done = _finish(unfinished, folder)
     except OSError as error:
@@ -90,7 +99,7 @@ def extract(path: str, cache: str) -> Iterator[float]:
     finally:
         bpy.data.scenes.remove(scene)
         if not done:
-            shutil.rmtree(unfinished, ignore_errors=True)
+            _delete(unfinished)
 
 
 def _finish(unfinished: str, folder: str) -> bool:
@@ -98,7 +107,7 @@ def _finish(unfinished: str, folder: str) -> bool:
     try:
         os.rename(unfinished, folder)
     except OSError:
-        if os.path.isfile(os.path.join(folder, "movie.txt")):
+        if os.path.isfile(os.path.join(folder, _FACTS)):
             return False
         _remove(folder)
         os.rename(unfinished, folder)
@@ -112,8 +121,16 @@ def _remove(folder: str) -> bool:
         os.rename(folder, condemned)
     except OSError:
         return False  # another program reads in it, or has removed it
-    shutil.rmtree(condemned, ignore_errors=True)
+    _delete(condemned)
     return True
+
+
+def _delete(folder: str) -> None:
+    """Deletes a folder with the files that are made here. What else is in it stays, and so does the folder then."""
+    with contextlib.suppress(OSError):
+        for name in filter(_FILE.fullmatch, os.listdir(folder)):
+            os.remove(os.path.join(folder, name))
+        os.rmdir(folder)
 
 
 def _prepare(scene, path: str) -> tuple[int, float]:
@@ -158,7 +175,7 @@ def shrink(cache: str, limit: int, keep: set[str]) -> int:
             if not entry.name.endswith(_UNFINISHED):
                 entries.append((used, entry.path, _size(entry.path)))
             elif used < still_used:
-                shutil.rmtree(entry.path, ignore_errors=True)  # its Blender was ended
+                _delete(entry.path)  # its Blender was ended
     total, removed = sum(size for _, _, size in entries), 0
     for used, path, size in sorted(entries):
         if total <= limit or used >= still_used:
@@ -169,10 +186,20 @@ def shrink(cache: str, limit: int, keep: set[str]) -> int:
 
 
 def _folders(cache: str) -> list[os.DirEntry]:
+    """The folders that belong to the cache, finished and unfinished ones."""
     try:
-        return [entry for entry in os.scandir(cache) if entry.is_dir()]
+        return [entry for entry in os.scandir(cache) if _NAME.fullmatch(entry.name) and _is_own(entry)]
     except OSError:
         return []
+
+
+def _is_own(entry: os.DirEntry) -> bool:
+    """Whether a folder with the name of a movie holds only files that are made here, and the facts if it is finished."""
+    try:
+        names = os.listdir(entry.path) if entry.is_dir(follow_symlinks=False) else [""]
+    except OSError:
+        return False
+    return all(map(_FILE.fullmatch, names)) and (entry.name.endswith(_UNFINISHED) or _FACTS in names)
 
 
 def _size(folder: str) -> int:

@@ -182,6 +182,9 @@ def text(folder: str, document: Mapping[str, Any]) -> str:
 
 def put(path: str, content: str) -> None:
     """Writes a file of text. It is complete, or it does not appear."""
+    # Renaming asks only who may write into the folder.
+    if os.path.isfile(path) and not (os.access(path, os.W_OK) and os.stat(path).st_mode & 0o222):
+        raise Problem(f"Cannot write {path}: it is read-only for this user")
     unfinished = f"{path}.{os.getpid()}.unfinished"
     try:
         with open(unfinished, "w", encoding="utf-8", newline="\n") as file:

@@ -106,7 +106,10 @@ def _document(ob: bpy.types.Object) -> dict[str, Any]:
 
 def of_movies(shots: Iterable[dict[str, Any]]) -> list[str]:
     """The objects whose pictures are in this machine's cache of movies."""
-    cache = os.path.normcase(os.path.realpath(preferences.cache_folder()))
+    try:
+        cache = os.path.normcase(os.path.realpath(preferences.cache_path()))
+    except Problem:
+        return []  # no cache, so no pictures in it
     patterns = {shot["object"]: shot["document"]["footage"]["pattern"] for shot in shots}
     folders = {name: os.path.normcase(os.path.realpath(os.path.dirname(pattern))) for name, pattern in patterns.items()}
     return [name for name, folder in folders.items() if os.path.dirname(folder) == cache]

@@ -29,6 +29,7 @@ nothing has changed then.
 `style`               skeleton clips, and drawings that follow them
 `documents`           helpers for documents, and for files that other programs may write too
 `about`               version, path and parameters of the native library
+`build`               version of this package
 `native`              the native library: loading, handles, errors
 ====================  ==============================================================================
 
@@ -37,6 +38,7 @@ May import: no other package, and nothing beside Python's standard library.
 
 from . import fills, lines, style, tween
 from .about import library_path, parameters, version
+from .build import BUILD as __version__
 from .native.errors import Cancelled, LibraryError, RototoonError
 from .outcomes import outcomes
 from .results import Conformed, End, Exchange, Job, Outcome, Outcomes, Summary, Track, Unseen, WeakestFrame
@@ -61,6 +63,7 @@ __all__ = [
     "Track",
     "Unseen",
     "WeakestFrame",
+    "__version__",
     "fills",
     "fit_strokes",
     "hidden_lines",

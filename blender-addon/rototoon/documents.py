@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .native import handles
-from .native.arrays import text
+from .native.arrays import path_text, text
 
 
 def by_frame(entries: Mapping[str, Any] | None) -> dict[int, Any]:
@@ -17,7 +17,7 @@ def by_frame(entries: Mapping[str, Any] | None) -> dict[int, Any]:
 
 def mark(path: str | os.PathLike[str]) -> str:
     """A mark of what a file holds now, for `replace`. Take it before you read the file. It is empty if there is no file."""
-    found: str = handles.take(handles.Text, "rototoon_file_mark", *text(os.fsdecode(path)))
+    found: str = handles.take(handles.Text, "rototoon_file_mark", *path_text(path))
     return found
 
 
@@ -27,5 +27,5 @@ def replace(path: str | os.PathLike[str], content: str, read: str = "") -> str:
     `read` is the mark from before. If another program wrote the file since, it stays as it is: the text goes into a new file beside it,
     and the `RototoonError` names both. Without a mark the file is replaced, whatever it holds.
     """
-    written: str = handles.take(handles.Text, "rototoon_file_replace", *text(os.fsdecode(path)), *text(content), *text(read))
+    written: str = handles.take(handles.Text, "rototoon_file_replace", *path_text(path), *text(content), *text(read))
     return written

@@ -17,7 +17,7 @@ from . import fills
 from .fills import Click, Filled, Leak, Recolour, flat
 from .lines import Traced
 from .native import handles
-from .native.arrays import as_json, buffer, pair, text
+from .native.arrays import as_json, buffer, pair, path_text, text
 from .native.errors import RototoonError
 from .results import Conformed, End, Exchange, Job, Summary, Track, Unseen, WeakestFrame
 from .types import Document, Points, Progress
@@ -35,13 +35,13 @@ class Session:
     @classmethod
     def open(cls, path: str | os.PathLike[str]) -> Session:
         """Opens a project file. A relative footage pattern is relative to the file's folder."""
-        handle = handles.Session.make("rototoon_session_open", *text(os.fsdecode(path)))
+        handle = handles.Session.make("rototoon_session_open", *path_text(path))
         return cls(handle)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any], folder: str | os.PathLike[str]) -> Session:
         """Opens a document in memory. A relative footage pattern is relative to `folder`."""
-        handle = handles.Session.make("rototoon_session_new", *as_json(document), *text(os.fsdecode(folder)))
+        handle = handles.Session.make("rototoon_session_new", *as_json(document), *path_text(folder))
         return cls(handle)
 
     def document(self) -> Document:
@@ -65,7 +65,7 @@ class Session:
         What another program wrote to the file after this session opened or saved it is not written over: the document goes into a new
         file beside it, and the error names both. A file that this session neither opened nor saved is replaced.
         """
-        self._handle.call("rototoon_session_save", *text(os.fsdecode(path)))
+        self._handle.call("rototoon_session_save", *path_text(path))
 
     def set_footage(self, footage: Mapping[str, Any]) -> None:
         """Replaces the document's ``footage``. If the pictures differ, the session forgets what it knows of them."""

@@ -78,7 +78,7 @@ def folder_of(ob, chosen: str = "") -> str:
         raise Problem("No library chosen: choose its folder in the panel Style")
     if folder.startswith("//") and not bpy.data.filepath:
         raise Problem(f"The library {folder} is relative to a file that is not saved: choose it again")
-    return os.path.normpath(bpy.path.abspath(folder))
+    return os.path.normpath(os.path.expanduser(bpy.path.abspath(folder)))
 
 
 def read(folder: str) -> Shelf:

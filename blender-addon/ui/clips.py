@@ -90,7 +90,8 @@ def _read_soon(ob) -> None:
         global _asked
         _asked = ""
         found = bpy.data.objects.get(name)
-        if found is not None:
+        # Meanwhile the extension may have been switched off.
+        if hasattr(found, "rototoon"):
             clip_browser.refresh_for(found)
 
     bpy.app.timers.register(read, first_interval=0.01)

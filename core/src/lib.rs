@@ -77,6 +77,13 @@
 
 pub mod pipeline;
 
+/// The version of this build, such as "0.2.0", or "0.2.1-dev20261201004020+h1a2b3c4d" between two releases. `cargo xtask` names it in the variable `ROTOTOON_BUILD`;
+/// what cargo builds without it has the version of the workspace.
+pub const VERSION: &str = match option_env!("ROTOTOON_BUILD") {
+    Some(version) => version,
+    None => env!("CARGO_PKG_VERSION"),
+};
+
 pub use rototoon_base::{curve, file, geometry, limits, memory, numeric, scene};
 pub use rototoon_conform as conform;
 pub use rototoon_document as project;

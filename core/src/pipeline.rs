@@ -94,6 +94,7 @@ use crate::track::{TrackOptions, Tracker, Tracking};
 use cache::FileCache;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use std::collections::BTreeMap;
+use std::io;
 use std::ops::RangeInclusive;
 use std::path::Path;
 use std::sync::Arc;
@@ -327,17 +328,27 @@ pub fn pixel_aspect(document: &Document, folder: &Path) -> f64 {
 
 /// Rewrites the relative footage pattern of a document that moves from folder `from` to folder `to`, so it still names
 /// the same files. The new pattern is relative if a relative path exists, otherwise absolute.
-pub fn relocate(document: &mut Document, from: &Path, to: &Path) {
+///
+/// # Errors
+///
+/// A folder on the way to the footage has a name that is no text. The document stays as it is.
+pub fn relocate(document: &mut Document, from: &Path, to: &Path) -> io::Result<()> {
     if let Some(pattern) = relative_pattern(document) {
-        *pattern = output::moved_pattern(pattern, from, to);
+        *pattern = output::moved_pattern(pattern, from, to)?;
     }
+    Ok(())
 }
 
 /// Makes the footage pattern of a document absolute that was in `folder` and goes where it has no folder: into a pipe.
-pub fn unfold(document: &mut Document, folder: &Path) {
+///
+/// # Errors
+///
+/// As for [`relocate`].
+pub fn unfold(document: &mut Document, folder: &Path) -> io::Result<()> {
     if let Some(pattern) = relative_pattern(document) {
-        *pattern = output::absolute_pattern(pattern, folder);
+        *pattern = output::absolute_pattern(pattern, folder)?;
     }
+    Ok(())
 }
 
 fn relative_pattern(document: &mut Document) -> Option<&mut String> {

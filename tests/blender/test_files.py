@@ -401,3 +401,14 @@ def test_import_says_what_is_other_in_the_scene(addon, shot_in_use, tmp_path):
     text = addon("scripting").take_reports()[-1].text
     for said in ('through a new camera, "in Camera"', "the scene has 160x90 pixels now, before 1920x1080", "the frames 101 to 109 now, before 101 to 240"):
         assert said in text, text
+
+
+def test_a_file_that_may_not_be_written_stays(addon, tmp_path):
+    """A file of a colleague in a shared folder; renaming another one to its name would replace it."""
+    files, path = addon("exchange.files"), tmp_path / "batch.json"
+    files.put(str(path), "one")
+    files.put(str(path), "two")
+    path.chmod(0o444)
+    with pytest.raises(addon("blender.errors").Problem, match="batch.json: it is read-only for this user"):
+        files.put(str(path), "three")
+    assert path.read_text() == "two" and [entry.name for entry in tmp_path.iterdir()] == ["batch.json"]

@@ -233,12 +233,46 @@ def test_not_a_movie(addon, tmp_path):
 
 def test_cache_keeps_its_limit(addon, tmp_path):
     movie = addon("blender.movie")
-    for age, name in enumerate(("new", "middle", "old", "used")):
-        (tmp_path / name).mkdir()
-        (tmp_path / name / "frame_000001.png").write_bytes(b"x" * 100)
-        os.utime(tmp_path / name, (1_000_000 - age, 1_000_000 - age))
-    assert movie.shrink(str(tmp_path), 250, {"used"}) == 2
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["new", "used"]
+    new, middle, old, used = names = [letter * 24 for letter in "cbad"]
+    for age, name in enumerate(names):
+        lay_files(tmp_path / name, 1_000_000 - age, "frame_000001.png", "movie.txt")
+    assert movie.shrink(str(tmp_path), 500, {used}) == 2
+    assert {p.name for p in tmp_path.iterdir()} == {new, used}
+
+
+def lay_files(folder, time, *names):
+    """A folder that was last changed long ago, with files of 100 bytes."""
+    folder.mkdir()
+    for name in names:
+        (folder / name).write_bytes(b"x" * 100)
+    os.utime(folder, (time, time))
+
+
+def test_folders_of_the_artist_in_the_cache_folder_stay(addon, tmp_path):
+    """The artist may choose a folder as Cache Folder that has other things in it; they do not count, and they do not vanish."""
+    movie = addon("blender.movie")
+    hex_name, random = "0123456789abcdef" * 2, "0" * 12
+    own = {
+        "sh010 renders": ("frame_000001.png", "movie.txt"),
+        "sh020.unfinished": ("work.blend",),
+        "notes.unfinished": (),
+        f"killed.{random}.unfinished": ("frame_000001.png",),
+        hex_name[:24]: ("frame_000001.png",),
+        hex_name[1:25]: ("frame_000001.png", "movie.txt", "notes.txt"),
+        f"{hex_name[:24]}.{random}.unfinished": ("frame_000001.png", "work.blend"),
+        hex_name[:23]: ("frame_000001.png", "movie.txt"),
+    }
+    for name, files in own.items():
+        lay_files(tmp_path / name, 1_000_000, *files)
+    (tmp_path / hex_name[1:25] / "deep").mkdir()
+    lay_files(tmp_path / hex_name[2:26], 1_000_000, "frame_000001.png", "movie.txt")
+    lay_files(tmp_path / f"{hex_name[2:26]}.{random}.unfinished", 1_000_000, "frame_000001.png")
+    assert movie.shrink(str(tmp_path), 200, set()) == 0, "what is the artist's does not count"
+    assert not (tmp_path / f"{hex_name[2:26]}.{random}.unfinished").exists()
+    assert movie.shrink(str(tmp_path), 0, set()) == 1
+    assert {path.name: {file.name for file in path.iterdir()} - {"deep"} for path in tmp_path.iterdir()} == {
+        name: set(files) for name, files in own.items()
+    }
 
 
 def test_two_blenders_share_a_cache(addon, tmp_path, monkeypatch):
@@ -258,7 +292,7 @@ def test_two_blenders_share_a_cache(addon, tmp_path, monkeypatch):
 
     assert movie.shrink(str(cache), 0, set()) == 0, "used within a day"
     os.utime(Path(frames.pattern).parent, (1_000_000, 1_000_000))
-    killed = cache / f"killed{movie._UNFINISHED}"
+    killed = cache / f"{'0' * 24}.{'0' * 12}{movie._UNFINISHED}"
     killed.mkdir()
     os.utime(killed, (1_000_000, 1_000_000))
 
@@ -287,6 +321,21 @@ def test_an_opened_file_marks_its_movie_as_used(addon, tmp_path):
     os.utime(folder, (1_000_000, 1_000_000))
     bpy.ops.wm.open_mainfile(filepath=str(blend))
     assert folder.stat().st_mtime > 1_000_000
+
+
+def test_work_on_a_movie_marks_it_as_used(addon, fake, movie_shot, tmp_path):
+    """A file may be open for days; another Blender that shares the cache must not remove its pictures meanwhile."""
+    shots.draw(addon, movie_shot, 1, [shots.diamond(0)])
+    shots.draw(addon, movie_shot, 9, [shots.diamond(8)])
+    folder = next((tmp_path / "cache").iterdir())
+    blend = str(tmp_path / "shot.blend")
+    for work in (bpy.ops.rototoon.track, lambda: bpy.ops.wm.save_as_mainfile(filepath=blend)):
+        os.utime(folder, (1_000_000, 1_000_000))
+        assert work() == {"FINISHED"}
+        noted = folder.stat().st_mtime_ns
+        assert noted > 1_000_000 * 10**9
+        bpy.ops.wm.save_as_mainfile(filepath=blend)
+        assert folder.stat().st_mtime_ns == noted, "once an hour is enough"
 
 
 def test_a_scene_with_other_footage_keeps_its_size_and_says_so(addon, tmp_path):

@@ -33,6 +33,42 @@ assert not dir(bpy.ops.rototoon)
 print("done")
 """
 
+FROM_BOTH = """
+import os
+import sys
+import bpy
+import addon_utils
+addon_utils.enable("bl_pkg")
+studio, own = "bl_ext.system.rototoon", "bl_ext.user_default.rototoon"
+assert addon_utils.enable(studio, default_set=True), "not enabled"
+import rototoon
+
+def install():
+    try:
+        bpy.ops.extensions.package_install_files(filepath=sys.argv[1], repo="user_default", enable_on_install=True)
+    except RuntimeError as error:
+        print(error)
+    hooks = [getattr(bpy.app.handlers, name) for name in dir(bpy.app.handlers)]
+    return sorted({hook.__module__.rpartition(".rototoon")[0] for found in hooks if isinstance(found, list) for hook in found
+                   if "rototoon" in getattr(hook, "__module__", "")})
+
+assert install() == ["bl_ext.system"], install()
+assert sys.modules["rototoon"] is rototoon, "the studio's copy keeps its package"
+folder = sys.argv[3]
+bpy.ops.wm.save_as_mainfile(filepath=folder + "/a.blend")
+assert bpy.ops.rototoon.setup(filepath=sys.argv[2]) == {"FINISHED"}
+os.makedirs(folder + "/sub/deep")
+bpy.ops.wm.save_as_mainfile(filepath=folder + "/sub/deep/b.blend")
+assert os.path.samefile(bpy.path.abspath(bpy.context.object.rototoon.pattern) % 1, sys.argv[2])
+addon_utils.disable(studio, default_set=True)
+assert not dir(bpy.ops.rototoon)
+assert addon_utils.enable(own, default_set=True) and dir(bpy.ops.rototoon)
+assert not addon_utils.enable(studio), "the other way round"
+addon_utils.disable(own, default_set=True)
+assert not dir(bpy.ops.rototoon)
+print("done")
+"""
+
 
 def altered(source: Path, target: Path, name: str, change) -> Path:
     """A copy of a zip with one file changed."""
@@ -117,3 +153,17 @@ def test_a_read_only_system_repository_serves(tmp_path):
     run = subprocess.run(words, cwd=tmp_path, env=own, capture_output=True, text=True, check=False, timeout=300)
     assert run.returncode == 0 and run.stdout.strip().endswith("done"), run.stdout + run.stderr
     assert files() == before
+
+
+@needs_zip
+def test_a_second_copy_from_another_repository_is_refused(tmp_path):
+    """The studio's copy is switched on; the artist's own one would change the footage's paths a second time at each save."""
+    with zipfile.ZipFile(ZIP) as file:
+        file.extractall(tmp_path / "extensions/system/rototoon")
+    own = os.environ | {"BLENDER_USER_RESOURCES": str(tmp_path / "user"), "BLENDER_SYSTEM_EXTENSIONS": str(tmp_path / "extensions")}
+    footage = shots.draw_sequence(tmp_path / "frames")
+    words = [sys.executable, "-c", FROM_BOTH, ZIP, str(footage), str(tmp_path)]
+    run = subprocess.run(words, cwd=tmp_path, env=own, capture_output=True, text=True, check=False, timeout=300)
+    assert run.returncode == 0 and run.stdout.strip().endswith("done"), run.stdout + run.stderr
+    told = 'Rototoon is switched on already, from the repository "{}": switch that copy off first'
+    assert all(told.format(name) in run.stdout + run.stderr for name in ("system", "user_default")), run.stdout + run.stderr

@@ -2,9 +2,12 @@
 
 import json
 import math
+import os
+import subprocess
+import sys
 
 import pytest
-from conftest import LAST, draw, square, write_png
+from conftest import LAST, PACKAGE, draw, square, write_png
 from rototoon import Cancelled, RototoonError, Session
 
 FRAMES = list(range(LAST + 1))
@@ -148,3 +151,24 @@ def test_a_document_moves_to_footage_that_is_delivered_again(session, folder, tm
     assert [sorted(each) for each in keys] == [["101", "106", "112"]] * 2
     assert keys[0]["106"] == before["parts"][0]["keys"]["6"]
     assert moved["parts"][0]["tracks"]["105"] == before["parts"][0]["tracks"]["4"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere names of files are UTF-8 in every locale")
+@pytest.mark.parametrize("utf8", ["0", "1"])
+def test_paths_are_utf8_in_every_locale(tmp_path, utf8):
+    """In an ASCII locale Python knows the signs of a path only as bytes. A name that is no UTF-8 is refused with a reason."""
+    folder = tmp_path / "Übung 動画"
+    folder.mkdir()
+    footage = {"pattern": "f_%d.png", "first": 0, "last": 1, "fps": 12, "width": 8, "height": 8}
+    (folder / "project.json").write_text(json.dumps({"rototoon": 1, "footage": footage, "parts": []}))
+    code = (
+        "import os, sys; from rototoon import RototoonError, Session\n"
+        "with Session.open(sys.argv[1]) as session: session.save(os.fsencode(sys.argv[1]))\n"
+        "with Session.open('\\u00dcbung \\u52d5\\u753b/project.json') as session: session.save(sys.argv[1])\n"
+        "try: Session.open(b'/sh\\xffot/project.json')\n"
+        "except RototoonError as error: print(ascii(str(error)))"
+    )
+    own = os.environ | {"LC_ALL": "C", "PYTHONUTF8": utf8, "PYTHONCOERCECLOCALE": "0", "PYTHONPATH": str(PACKAGE.parent)}
+    words = [sys.executable, "-c", code, str(folder / "project.json")]
+    run = subprocess.run(words, cwd=tmp_path, env=own, capture_output=True, text=True, check=False)
+    assert run.returncode == 0 and "not UTF-8" in run.stdout, run.stdout + run.stderr

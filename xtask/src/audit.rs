@@ -8,7 +8,7 @@
 //! `test`.
 
 use crate::licences::SHIPPED;
-use crate::wheel;
+use crate::version;
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{capture, cargo, command, root, run, target};
@@ -42,7 +42,7 @@ pub fn bills() -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(&folder)?;
     let mut made = Vec::new();
     // With a date of its own the tool takes neither the time of day nor a number by chance.
-    let date = wheel::date()?.to_string();
+    let date = version::date()?.to_string();
     let words = ["cyclonedx", "--format", "json", "--quiet"];
     run(command(program).current_dir(root()).args(words).env("SOURCE_DATE_EPOCH", date))?;
     for entry in manifests()? {

@@ -8,7 +8,8 @@
 //! the library needs. Blender's own packager builds and validates the zip.
 
 use crate::platform::{LINUX, Platform, THIS_MACHINE};
-use crate::{docs, elf, ofx, wheel};
+use crate::version::Kind;
+use crate::{docs, elf, ofx, version, wheel};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -21,6 +22,9 @@ pub const GLIBC: (u32, u32) = (2, 28);
 /// The packages that are tested together, as arguments of cargo: all but the OpenFX host, which compiles C++.
 pub const TESTED: [&str; 3] = ["--workspace", "--exclude", "rototoon-ofx-host"];
 const TRIPLE: &str = LINUX.triple;
+/// The variable from which the core takes the version of a build (`rototoon::VERSION`). The builds of the tests have none: each change of a file would
+/// link all of them again.
+pub const MARK: &str = "ROTOTOON_BUILD";
 
 /// The files that `bundle` makes.
 #[derive(Clone, Debug)]
@@ -39,6 +43,8 @@ pub struct Bundle {
     pub ofx: PathBuf,
     /// The development commands that need the core; built with [`Build::WithMeasure`] only.
     pub measure: PathBuf,
+    /// The version, which all of them but the binaries of the tests name.
+    pub version: String,
 }
 
 /// Which build of the library, the command line and the OpenFX plugin is packed.
@@ -60,21 +66,24 @@ pub enum Build {
 
 impl Bundle {
     /// Where a build leaves it.
-    pub fn of(build: Build) -> Self {
+    pub fn of(build: Build) -> Result<Self> {
         let built = match build {
             Build::Tested | Build::TestedWithHelp => target().join("debug"),
             Build::Here => target().join("release"),
             Build::Installed | Build::WithMeasure => target().join(TRIPLE).join("release"),
         };
-        Self {
-            zip: target().join(zip_name(&LINUX)),
-            wheel: wheel::place(tag(build)),
+        let version = version_of(build)?;
+        Ok(Self {
+            // One name for all builds, so that they do not pile up. The manifest in it has the version.
+            zip: target().join("rototoon-linux_x64.zip"),
+            wheel: wheel::place(tag(build), &version),
+            version,
             library: built.join(LINUX.library),
             plugin: built.join(LINUX.plugin),
             cli: built.join(LINUX.cli),
             ofx: ofx::place(),
             measure: built.join("xtask-measure"),
-        }
+        })
     }
 }
 
@@ -90,19 +99,29 @@ pub enum Packager {
 /// Builds, packs and validates.
 pub fn bundle(packager: &Packager, build: Build) -> Result<Bundle> {
     ensure!(cfg!(all(target_os = "linux", target_arch = "x86_64")), "the bundle is built on Linux x86-64 only");
-    let bundle = Bundle::of(build);
+    let bundle = Bundle::of(build)?;
     compile(build)?;
     if build != Build::Here {
-        ofx::lay_out(&bundle.plugin)?;
+        ofx::lay_out(&bundle.plugin, &bundle.version)?;
     }
-    let wheel = wheel::build(&LINUX, tag(build), &bundle.library)?;
-    pack_extension(packager, &[(LINUX, wheel)], !matches!(build, Build::Tested | Build::Here), &target())?;
-    println!("bundle: {}", bundle.zip.display());
+    let wheels = [(LINUX, wheel::build(&LINUX, tag(build), &bundle.version, &bundle.library)?)];
+    let zips = pack_extension(packager, &wheels, &bundle.version, !matches!(build, Build::Tested | Build::Here))?;
+    zips.iter().try_for_each(|zip| rename(zip, &bundle.zip))?;
+    println!("bundle: {} ({})", bundle.zip.display(), bundle.version);
     Ok(bundle)
 }
 
+/// The version of a build.
+pub fn version_of(build: Build) -> Result<String> {
+    version::of(match build {
+        Build::Installed | Build::WithMeasure => Kind::Installed,
+        Build::Here => Kind::Here,
+        Build::Tested | Build::TestedWithHelp => Kind::Tested,
+    })
+}
+
 /// The platform tag of a build's wheel: only what artists install runs on other machines too.
-fn tag(build: Build) -> &'static str {
+pub fn tag(build: Build) -> &'static str {
     match build {
         Build::Installed | Build::WithMeasure => LINUX.wheel,
         Build::Here | Build::Tested | Build::TestedWithHelp => THIS_MACHINE,
@@ -116,29 +135,39 @@ pub fn compile(build: Build) -> Result<()> {
         Build::Here => compile_here(),
         Build::Installed | Build::WithMeasure => {
             compile_installed(build)?;
-            let Bundle { library, cli, plugin, .. } = Bundle::of(build);
+            let Bundle { library, cli, plugin, .. } = Bundle::of(build)?;
             [library, cli, plugin].iter().try_for_each(|file| elf::assert_glibc(file, GLIBC))
         }
     }
 }
 
-/// Packs the extension with these wheels: one zip for each system, in the folder `out`.
-pub fn pack_extension(packager: &Packager, wheels: &[(Platform, PathBuf)], help: bool, out: &Path) -> Result<()> {
-    let staged = stage(wheels)?;
+/// Packs the extension with these wheels: one zip for each system, in a folder that the next call makes empty.
+pub fn pack_extension(
+    packager: &Packager,
+    wheels: &[(Platform, PathBuf)],
+    version: &str,
+    help: bool,
+) -> Result<Vec<PathBuf>> {
+    let staged = stage(wheels, version)?;
     if help {
         docs::put_into(&staged.join("help"))?;
     }
-    pack(packager, &staged, wheels, out)
+    pack(packager, &staged, wheels, version)
 }
 
 /// The name that Blender's packager gives the zip of a system.
-pub fn zip_name(platform: &Platform) -> String {
-    format!("rototoon-{}-{}.zip", env!("CARGO_PKG_VERSION"), platform.blender.replace('-', "_"))
+pub fn zip_name(platform: &Platform, version: &str) -> String {
+    format!("rototoon-{version}-{}.zip", platform.blender.replace('-', "_"))
+}
+
+/// Gives a file another place in the folder of built files.
+pub fn rename(from: &Path, to: &Path) -> Result<()> {
+    std::fs::rename(from, to).with_context(|| format!("cannot move {from:?} to {to:?}"))
 }
 
 /// The interpreter of an environment with zig and cargo-zigbuild, which build against an old glibc.
 pub fn tools() -> Result<PathBuf> {
-    python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild", "ziglang"])
+    python::venv("venv-build", &python::find_any()?, &["cargo-zigbuild==0.24.1", "ziglang==0.17.1"])
 }
 
 /// Everything that the Rust tests use, in the same selection of packages: another one would compile dependencies again.
@@ -150,6 +179,7 @@ pub fn compile_tested() -> Result<()> {
 fn compile_here() -> Result<()> {
     run(cargo()
         .args(["build", "--release", "-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "xtask-measure"])
+        .env(MARK, version_of(Build::Here)?)
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none"))
 }
 
@@ -164,7 +194,7 @@ fn compile_installed(build: Build) -> Result<()> {
     let versioned = format!("{TRIPLE}.{}.{}", GLIBC.0, GLIBC.1);
     let mut zigbuild = command(bin.join("cargo-zigbuild"));
     zigbuild
-        .args(["zigbuild", "--quiet", "--release", "--target", &versioned])
+        .args(["zigbuild", "--quiet", "--locked", "--release", "--target", &versioned])
         .args(["-p", "rototoon-capi", "-p", "rototoon-cli", "-p", "rototoon-ofx"])
         .args(if build == Build::WithMeasure { &["-p", "xtask-measure"][..] } else { &[] });
     run(release_settings(&mut zigbuild, &tools)?)
@@ -177,6 +207,7 @@ pub fn release_settings<'c>(build: &'c mut Command, tools: &Path) -> Result<&'c 
     let path = std::env::join_paths(std::iter::once(bin.to_path_buf()).chain(std::env::split_paths(&path)))?;
     Ok(build
         .env("PATH", path)
+        .env(MARK, version_of(Build::Installed)?)
         .env("CARGO_ENCODED_RUSTFLAGS", renamed_paths().join("\x1f"))
         // Line tables would only make the zip larger.
         .env("CARGO_PROFILE_RELEASE_DEBUG", "none")
@@ -196,7 +227,7 @@ pub fn renamed_paths() -> Vec<String> {
 }
 
 /// Makes the folder that is packed: the add-on's files and the wheels.
-fn stage(wheels: &[(Platform, PathBuf)]) -> Result<PathBuf> {
+fn stage(wheels: &[(Platform, PathBuf)], version: &str) -> Result<PathBuf> {
     let staged = target().join("bundle/rototoon");
     empty_folder(&staged)?;
     // The package `rototoon` is in the wheels.
@@ -215,12 +246,13 @@ fn stage(wheels: &[(Platform, PathBuf)]) -> Result<PathBuf> {
     let platforms: Vec<&str> = wheels.iter().map(|(platform, _)| platform.blender).collect();
     let place = staged.join("blender_manifest.toml");
     let text = std::fs::read_to_string(&place).context("blender_manifest.toml")?;
-    std::fs::write(&place, manifest(&text, &platforms, &names)?)?;
+    std::fs::write(&place, manifest(&text, version, &platforms, &names)?)?;
+    version::mark(&staged.join("build.py"), version)?;
     Ok(staged)
 }
 
-/// The manifest with the systems and the wheels of a zip.
-fn manifest(text: &str, platforms: &[&str], wheels: &[String]) -> Result<String> {
+/// The manifest with the version, the systems and the wheels of a zip.
+fn manifest(text: &str, version: &str, platforms: &[&str], wheels: &[String]) -> Result<String> {
     let known = text.lines().find(|line| line.starts_with("platforms = ")).unwrap_or_default();
     // Blender's validator accepts platform names that do not exist.
     for platform in platforms {
@@ -233,10 +265,13 @@ fn manifest(text: &str, platforms: &[&str], wheels: &[String]) -> Result<String>
         !text.contains("\nwheels"),
         "blender_manifest.toml: found wheels, expected none: they are entered when it is packed"
     );
+    let numbered =
+        text.lines().find(|line| line.starts_with("version = ")).context("blender_manifest.toml: no version")?;
+    let text = text.replacen(&format!("\n{numbered}\n"), &format!("\nversion = {version:?}\n"), 1);
     Ok(text.replace(known, &format!("platforms = {platforms:?}\nwheels = {wheels:?}")))
 }
 
-fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], place: &Path) -> Result<()> {
+fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], version: &str) -> Result<Vec<PathBuf>> {
     let out = target().join("bundle/out");
     empty_folder(&out)?;
     let words = ["build", "--split-platforms", "--source-dir"];
@@ -244,19 +279,18 @@ fn pack(packager: &Packager, staged: &Path, wheels: &[(Platform, PathBuf)], plac
     let mut built: Vec<String> = std::fs::read_dir(&out)?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<Result<_>>()?;
-    let mut expected: Vec<String> = wheels.iter().map(|(platform, _)| zip_name(platform)).collect();
+    let mut expected: Vec<String> = wheels.iter().map(|(platform, _)| zip_name(platform, version)).collect();
     built.sort();
     expected.sort();
     ensure!(built == expected, "the packager made {built:?}, expected {expected:?}");
-    for name in built {
-        let zip = out.join(&name);
+    let zips: Vec<PathBuf> = built.iter().map(|name| out.join(name)).collect();
+    for zip in &zips {
         // The packager writes the manifest anew, with the time of day.
-        wheel::archive(&zip, &zip)?;
-        let said = capture(packager.command()?.arg("validate").arg(&zip))?;
-        ensure!(!said.to_lowercase().contains("warning"), "{name}: the validator says: {said}");
-        std::fs::rename(&zip, place.join(&name)).with_context(|| format!("cannot move {zip:?} to {place:?}"))?;
+        wheel::archive(zip, zip)?;
+        let said = capture(packager.command()?.arg("validate").arg(zip))?;
+        ensure!(!said.to_lowercase().contains("warning"), "{zip:?}: the validator says: {said}");
     }
-    Ok(())
+    Ok(zips)
 }
 
 impl Packager {
@@ -297,11 +331,11 @@ mod tests {
 
     #[test]
     fn the_manifest_names_wheels_and_systems() {
-        let text = "name = \"a\"\nplatforms = [\"linux-x64\", \"windows-x64\"]\n\n[permissions]\n";
-        let made = manifest(text, &["linux-x64"], &["./wheels/a.whl".to_owned()]).unwrap();
-        let expected = "name = \"a\"\nplatforms = [\"linux-x64\"]\nwheels = [\"./wheels/a.whl\"]\n\n[permissions]\n";
+        let text = "schema_version = \"1.0.0\"\nversion = \"1.0.0\"\nplatforms = [\"linux-x64\", \"windows-x64\"]\n\n[permissions]\n";
+        let made = manifest(text, "2.0.0-dev1+h2", &["linux-x64"], &["./wheels/a.whl".to_owned()]).unwrap();
+        let expected = "schema_version = \"1.0.0\"\nversion = \"2.0.0-dev1+h2\"\nplatforms = [\"linux-x64\"]\nwheels = [\"./wheels/a.whl\"]\n\n[permissions]\n";
         assert_eq!(made, expected);
-        assert!(manifest(text, &["linux-arm64"], &[]).is_err());
-        assert!(manifest(&made, &["linux-x64"], &[]).is_err());
+        assert!(manifest(text, "2.0.0", &["linux-arm64"], &[]).is_err());
+        assert!(manifest(&made, "2.0.0", &["linux-x64"], &[]).is_err());
     }
 }

@@ -152,7 +152,7 @@ fn integer_parameters(name: &str, parameters: &[Parameter]) -> String {
 }
 
 /// FNV-1a, 64 bits (Fowler, Noll, Vo). The library computes the same hash of the header that it is built with.
-fn hash(bytes: &[u8]) -> u64 {
+pub fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 

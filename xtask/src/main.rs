@@ -22,6 +22,7 @@ mod release;
 mod steps;
 mod test;
 mod valgrind;
+mod version;
 mod wheel;
 mod window;
 mod windows;

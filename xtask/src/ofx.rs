@@ -16,21 +16,22 @@ pub fn place() -> PathBuf {
 }
 
 /// Makes the bundle of the Linux plugin of a build.
-pub fn lay_out(library: &Path) -> Result<()> {
+pub fn lay_out(library: &Path, version: &str) -> Result<()> {
     let place = place();
-    lay_out_at(&place, &[(LINUX, library.to_owned())])?;
+    lay_out_at(&place, &[(LINUX, library.to_owned())], version)?;
     println!("OpenFX: {}", place.display());
-    println!("  copy it to /usr/OFX/Plugins or to a folder of OFX_PLUGIN_PATH, where hosts look for plugins");
+    println!("  copy it to /usr/OFX/Plugins or to a folder of OFX_PLUGIN_PATH, where hosts look for plugins;");
+    println!("  remove an older one first: a host that has it loaded crashes if it is written over");
     Ok(())
 }
 
 /// Makes a bundle with the plugins of several systems: hosts take the one in their own system's folder.
-pub fn lay_out_at(place: &Path, plugins: &[(Platform, PathBuf)]) -> Result<()> {
+pub fn lay_out_at(place: &Path, plugins: &[(Platform, PathBuf)], version: &str) -> Result<()> {
     empty_folder(place)?;
     let contents = place.join("Contents");
     let resources = contents.join("Resources");
     std::fs::create_dir_all(&resources)?;
-    std::fs::write(contents.join("Info.plist"), property_list())?;
+    std::fs::write(contents.join("Info.plist"), property_list(version))?;
     for (platform, plugin) in plugins {
         if *platform == LINUX {
             check(plugin)?;
@@ -60,8 +61,9 @@ fn check(library: &Path) -> Result<()> {
     Ok(())
 }
 
-fn property_list() -> String {
-    let version = env!("CARGO_PKG_VERSION");
+fn property_list(version: &str) -> String {
+    // Only the second of the versions may have more than three numbers in it.
+    let released = version.split('-').next().unwrap_or(version);
     let entries = [
         ("CFBundleDevelopmentRegion", "English"),
         ("CFBundleExecutable", "Rototoon.ofx"),
@@ -69,7 +71,7 @@ fn property_list() -> String {
         ("CFBundleInfoDictionaryVersion", "6.0"),
         ("CFBundleName", "Rototoon"),
         ("CFBundlePackageType", "BNDL"),
-        ("CFBundleShortVersionString", version),
+        ("CFBundleShortVersionString", released),
         ("CFBundleVersion", version),
     ];
     let lines: String =
@@ -86,7 +88,7 @@ mod tests {
 
     #[test]
     fn the_property_list_names_the_binary() {
-        let text = property_list();
+        let text = property_list("0.2.0-dev1+h2");
         assert!(text.contains("<key>CFBundleExecutable</key>\n    <string>Rototoon.ofx</string>"));
         assert_eq!(text.matches("<key>").count(), text.matches("<string>").count());
     }
@@ -97,7 +99,7 @@ mod tests {
         empty_folder(&folder).unwrap();
         let other = folder.join("not-elf.so");
         std::fs::write(&other, "text").unwrap();
-        assert!(lay_out(&other).is_err());
+        assert!(lay_out(&other, "0.2.0").is_err());
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -21,7 +21,7 @@ pub fn photograph() -> Result<()> {
         screen: (1600, 1480),
         patience: 900,
     };
-    let sample = |folder: &Path| run(command(Bundle::of(Build::WithMeasure).measure).arg("sample").arg(folder));
+    let sample = |folder: &Path| run(command(Bundle::of(Build::WithMeasure)?.measure).arg("sample").arg(folder));
     match in_window("photograph", &script, sample)? {
         Some(stage) => accept(&stage.folder.join("pictures"), &root().join(PICTURES)),
         None => Ok(()),

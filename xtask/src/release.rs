@@ -8,13 +8,14 @@
 
 use crate::bundle::{self, Build, Bundle, Packager};
 use crate::platform::{LINUX, MACOS, Platform, WINDOWS};
-use crate::{audit, binary, licences, macos, ofx, wheel, windows};
+use crate::{audit, binary, licences, macos, ofx, version, wheel, windows};
 use anyhow::{Context, Result, bail, ensure};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// The version of the workspace, with which the manifest and the changelog agree.
+const WORKSPACE: &str = env!("CARGO_PKG_VERSION");
 /// Names of files that are no parts of the set's checksums.
 const SUMS: &str = "SHA256SUMS";
 
@@ -29,7 +30,7 @@ struct Built {
 /// Makes the set and checks it. With `twice` the Linux files are made anew and must be the same.
 pub fn release(twice: bool) -> Result<()> {
     check_versions()?;
-    let notes = section(&read("CHANGELOG.md")?, VERSION)?;
+    let notes = section(&read("CHANGELOG.md")?, WORKSPACE)?;
     let mut built = vec![linux()?];
     let mut missing = Vec::new();
     let others = [(WINDOWS, windows::build as fn() -> Result<windows::Built>), (MACOS, macos::build)];
@@ -52,33 +53,36 @@ pub fn release(twice: bool) -> Result<()> {
 
 fn linux() -> Result<Built> {
     bundle::compile(Build::Installed)?;
-    let Bundle { library, cli, plugin, .. } = Bundle::of(Build::Installed);
+    let Bundle { library, cli, plugin, .. } = Bundle::of(Build::Installed)?;
     Ok(Built { platform: LINUX, library, cli, plugin })
 }
 
 /// Writes the set.
 fn make(set: &Path, built: &[Built], notes: &str) -> Result<()> {
     empty_folder(set)?;
+    let version = bundle::version_of(Build::Installed)?;
     let mut wheels = Vec::new();
     for Built { platform, library, cli, plugin } in built {
         for file in [library, cli, plugin] {
             binary::assert_no_paths(file, &[&root(), &target(), &bundle::cargo_home()])?;
         }
-        let made = wheel::build(platform, platform.wheel, library)?;
+        let made = wheel::build(platform, platform.wheel, &version, library)?;
         std::fs::copy(&made, set.join(made.file_name().context("a wheel has a name")?))?;
         wheels.push((*platform, made));
-        let name = format!("rototoon-{VERSION}-cli-{}", platform.blender);
+        let name = format!("rototoon-{version}-cli-{}", platform.blender);
         let folder = target().join("release-parts").join(&name);
         empty_folder(&folder)?;
         copy_folder(&licences::folder(platform)?, &folder, &|_| true)?;
         std::fs::copy(cli, folder.join(platform.cli)).with_context(|| format!("cannot copy {cli:?}"))?;
         wheel::archive(&folder, &set.join(format!("{name}.zip")))?;
     }
-    bundle::pack_extension(&Packager::from_wheel()?, &wheels, true, set)?;
+    for zip in bundle::pack_extension(&Packager::from_wheel()?, &wheels, &version, true)? {
+        bundle::rename(&zip, &set.join(zip.file_name().context("a zip has a name")?))?;
+    }
     let place = target().join("release-parts/Rototoon.ofx.bundle");
     let plugins: Vec<(Platform, PathBuf)> = built.iter().map(|b| (b.platform, b.plugin.clone())).collect();
-    ofx::lay_out_at(&place, &plugins)?;
-    wheel::archive(&place, &set.join(format!("rototoon-{VERSION}-openfx.zip")))?;
+    ofx::lay_out_at(&place, &plugins, &version)?;
+    wheel::archive(&place, &set.join(format!("rototoon-{version}-openfx.zip")))?;
     for bill in audit::bills()? {
         binary::assert_no_paths(&bill, &[&root(), &target(), &bundle::cargo_home()])?;
         std::fs::copy(&bill, set.join(bill.file_name().context("a bill has a name")?))?;
@@ -106,10 +110,11 @@ fn names(set: &Path) -> Result<Vec<String>> {
 /// Checks each file and prints the table.
 fn report(set: &Path, built: &[Built]) -> Result<()> {
     run(command("sha256sum").current_dir(set).args(["--check", "--quiet", SUMS]))?;
-    let found = names(set)?;
+    let (found, version) = (names(set)?, bundle::version_of(Build::Installed)?);
     for Built { platform, .. } in built {
-        let wheel = format!("rototoon-{VERSION}-py3-none-{}.whl", platform.wheel);
-        for name in [wheel, bundle::zip_name(platform), format!("rototoon-{VERSION}-cli-{}.zip", platform.blender)] {
+        let wheel = format!("rototoon-{}-py3-none-{}.whl", version::of_wheel(&version), platform.wheel);
+        let cli = format!("rototoon-{version}-cli-{}.zip", platform.blender);
+        for name in [wheel, bundle::zip_name(platform, &version), cli] {
             ensure!(found.contains(&name), "the set lacks {name}");
         }
     }
@@ -199,7 +204,7 @@ fn sum(path: &Path) -> Result<String> {
 /// Fails unless the places that name the version agree.
 fn check_versions() -> Result<()> {
     let manifest = read("blender-addon/blender_manifest.toml")?;
-    let line = format!("version = {VERSION:?}");
+    let line = format!("version = {WORKSPACE:?}");
     ensure!(
         manifest.lines().any(|found| found == line),
         "blender_manifest.toml: found another version, expected {line}, as in Cargo.toml"

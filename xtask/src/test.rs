@@ -145,7 +145,7 @@ fn ofx_tests(build: Build) -> Result<Option<String>> {
         return Ok(Some(reason));
     }
     run(cargo().args(["clippy", "--quiet", "-p", OFX_HOST, "--all-targets", "--", "-D", "warnings"]))?;
-    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", Bundle::of(build).ofx))?;
+    run(cargo().args(["test", "--quiet", "-p", OFX_HOST]).env("ROTOTOON_OFX_BUNDLE", Bundle::of(build)?.ofx))?;
     Ok(None)
 }
 
@@ -191,14 +191,14 @@ fn boost() -> bool {
 
 /// pytest without Blender, on the packed library.
 fn python_tests(build: Build) -> Result<Option<String>> {
-    let built = Bundle::of(build);
+    let built = Bundle::of(build)?;
     if let Some(reason) = missing("Boost.Serialization", "libboost-serialization-dev", boost) {
         println!("projects for Natron are not read with Boost: {reason}");
     }
     run(command(python_environment()?)
         .args(["-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "tests/python"])
         .env("ROTOTOON_LIBRARY", &built.library)
-        .env("ROTOTOON_WHEEL", &built.wheel)
+        .env("ROTOTOON_WHEEL", wheel::made(bundle::tag(build))?)
         .env("ROTOTOON_SAMPLE", files())
         .env("ROTOTOON_CLI", &built.cli))?;
     Ok(None)
@@ -220,12 +220,12 @@ fn files() -> PathBuf {
 /// Writes the sample cartoon and the doll, which tests in Blender track and reshape.
 fn sample_files() -> Result<()> {
     bundle::compile_tested()?;
-    run(command(&Bundle::of(Build::Tested).measure).arg("sample").arg(files()))
+    run(command(&Bundle::of(Build::Tested)?.measure).arg("sample").arg(files()))
 }
 
 /// pytest inside one Blender, with the zip installed in a configuration of its own.
 fn blender_tests(wheel: Wheel, build: Build) -> Result<Option<String>> {
-    let built = Bundle::of(build);
+    let built = Bundle::of(build)?;
     let Some(python) = python::blender_venv(wheel)? else {
         return Ok(Some(format!("it needs Python {}, which was not found", wheel.python)));
     };

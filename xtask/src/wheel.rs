@@ -6,38 +6,49 @@
 
 use crate::licences;
 use crate::platform::Platform;
+use crate::version;
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use xtask_shell::python;
-use xtask_shell::shell::{capture, command, copy_folder, empty_folder, root, run, target};
+use xtask_shell::shell::{command, copy_folder, empty_folder, root, run, target};
 
 /// The environment with the packager.
 pub fn environment() -> Result<PathBuf> {
     python::venv("venv-wheel", &python::find_any()?, &["hatchling==1.33.0"])
 }
 
-/// Where the wheel with this platform tag is left.
-pub fn place(tag: &str) -> PathBuf {
-    target().join("wheels").join(tag).join(format!("rototoon-{}-py3-none-{tag}.whl", env!("CARGO_PKG_VERSION")))
+/// Where the wheel of a version with this platform tag is left.
+pub fn place(tag: &str, version: &str) -> PathBuf {
+    target().join("wheels").join(tag).join(format!("rototoon-{}-py3-none-{tag}.whl", version::of_wheel(version)))
+}
+
+/// The wheel that was made last with this platform tag. Its sources may have been changed since.
+pub fn made(tag: &str) -> Result<PathBuf> {
+    let folder = target().join("wheels").join(tag);
+    let entries = std::fs::read_dir(&folder).with_context(|| format!("cannot read {folder:?}"))?;
+    let mut wheels =
+        entries.flatten().map(|entry| entry.path()).filter(|path| path.extension() == Some("whl".as_ref()));
+    wheels.next().with_context(|| format!("no wheel is in {folder:?}"))
 }
 
 /// Packs a library. `tag` is the platform tag of the wheel's name: that of the platform, or one for this machine only.
 ///
 /// The same files give the same bytes.
-pub fn build(platform: &Platform, tag: &str, library: &Path) -> Result<PathBuf> {
+pub fn build(platform: &Platform, tag: &str, version: &str, library: &Path) -> Result<PathBuf> {
     let interpreter = environment()?;
     let out = target().join("wheels").join(tag);
     let staged = out.join("package");
     empty_folder(&out)?;
     stage(platform, library, &staged)?;
+    version::mark(&staged.join("rototoon/build.py"), version)?;
     run(command(interpreter)
         .args(["-m", "hatchling", "build", "--target", "wheel", "--directory"])
         .arg(&out)
         .current_dir(&staged)
-        .env("ROTOTOON_VERSION", env!("CARGO_PKG_VERSION"))
+        .env("ROTOTOON_VERSION", version::of_wheel(version))
         .env("ROTOTOON_WHEEL_PLATFORM", tag)
-        .env("SOURCE_DATE_EPOCH", date()?.to_string()))?;
-    let wheel = place(tag);
+        .env("SOURCE_DATE_EPOCH", version::date()?.to_string()))?;
+    let wheel = place(tag, version);
     ensure!(wheel.is_file(), "hatchling made no {wheel:?}");
     Ok(wheel)
 }
@@ -58,26 +69,16 @@ fn stage(platform: &Platform, library: &Path, staged: &Path) -> Result<()> {
 
 /// Packs a folder, or packs a zip again, with the time of the commit: the same content gives the same bytes.
 pub fn archive(source: &Path, zip: &Path) -> Result<()> {
-    run(command(environment()?).arg(root().join("xtask/archive.py")).args([source, zip]).arg(date()?.to_string()))
-}
-
-/// Seconds since 1970 that packed files carry: the time of the commit, so that two builds of one commit are the same.
-pub fn date() -> Result<u64> {
-    /// The earliest time that a zip can hold, for a folder without a history.
-    const EARLIEST: u64 = 315_619_200;
-    if let Some(named) = std::env::var_os("SOURCE_DATE_EPOCH") {
-        let named = named.to_string_lossy();
-        return named
-            .parse()
-            .with_context(|| format!("SOURCE_DATE_EPOCH: found {named:?}, expected seconds since 1970"));
-    }
-    let told = capture(command("git").args(["log", "-1", "--format=%ct"]));
-    Ok(told.ok().and_then(|text| text.parse().ok()).unwrap_or(EARLIEST).max(EARLIEST))
+    run(command(environment()?)
+        .arg(root().join("xtask/archive.py"))
+        .args([source, zip])
+        .arg(version::date()?.to_string()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use xtask_shell::shell::capture;
 
     /// Packs two files in this order, at this time of day, as other programs would.
     const PACK: &str = "import sys, zipfile
@@ -101,6 +102,11 @@ with zipfile.ZipFile(sys.argv[1], 'w') as out:
         let (evening, other) = pack("other.zip", ["20", "b/c.txt", "a.txt"]);
         let (_, more) = pack("more.zip", ["8", "a.txt", "b/d.txt"]);
         assert!(morning != evening && one == other && one != more);
+        // No zip can hold a time before 1980; nothing is left of one that was broken off.
+        let early = folder.join("early.zip");
+        let script = root().join("xtask/archive.py");
+        assert!(capture(command(&python).arg(script).args([&folder.join("one.zip"), &early]).arg("0")).is_err());
+        assert!(!early.exists() && !folder.join("early.zip.unfinished").exists());
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

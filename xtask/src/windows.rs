@@ -8,6 +8,7 @@
 //! Wine is no Windows. What it shows is that the code finds its files, and computes and writes the same there.
 
 use crate::binary::{self, Report};
+use crate::bundle;
 use crate::debian::{self, Debian, Mount};
 use crate::licences::SHIPPED;
 use crate::platform::WINDOWS;
@@ -203,7 +204,11 @@ impl System {
     }
 
     fn build(&self, profile: Profile) -> Result<()> {
-        run(&mut self.words("build", profile, &SHIPPED))
+        let mut build = self.words("build", profile, &SHIPPED);
+        if profile == Profile::Release {
+            build.env(bundle::MARK, bundle::version_of(bundle::Build::Installed)?);
+        }
+        run(&mut build)
     }
 
     /// Wine with a folder of its own settings, the drive R and the server `\\server\share`.

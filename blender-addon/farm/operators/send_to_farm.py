@@ -133,7 +133,7 @@ def folder_of(path: str, otherwise: str) -> str:
     """An absolute folder; a `Problem` with the text `otherwise` if there is none."""
     if not path or (path.startswith("//") and not bpy.data.filepath):
         raise Problem(otherwise)
-    return os.path.abspath(bpy.path.abspath(path))
+    return os.path.abspath(os.path.expanduser(bpy.path.abspath(path)))
 
 
 CLASSES = (ROTOTOON_OT_send_to_farm,)

@@ -6,7 +6,9 @@ import array
 import ctypes
 import json
 import operator
+import os
 import reprlib
+import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -19,6 +21,22 @@ def text(value: str) -> tuple[bytes, int]:
     if not isinstance(value, str):
         raise RototoonError(f"found {reprlib.repr(value)}, expected text")
     data = value.encode("utf-8", "surrogatepass")
+    return data, len(data)
+
+
+def path_text(value: str | bytes | os.PathLike[Any]) -> tuple[bytes, int]:
+    """A path as the library takes it, in UTF-8, and its length.
+
+    Python's own encoding of file names may be another one, such as ASCII in an old locale. Bytes of a name that are no text stay what they are.
+    """
+    given = os.fspath(value)
+    if isinstance(given, bytes):
+        return given, len(given)
+    try:
+        # On Windows such signs are halves of UTF-16, elsewhere bytes.
+        data = given.encode("utf-8", "surrogatepass" if sys.platform == "win32" else "surrogateescape")
+    except UnicodeEncodeError:
+        data = given.encode("utf-8", "surrogatepass")  # the library says what is wrong
     return data, len(data)
 
 

@@ -33,10 +33,7 @@ class ROTOTOON_OT_open_sample(Long, bpy.types.Operator):
     )
 
     def begin(self, _context):
-        try:
-            self._folder = Path(preferences.data_folder("sample"))
-        except OSError as error:
-            raise Problem(f"Cannot keep the sample's pictures: {error}") from error
+        self._folder = Path(preferences.data_folder("sample"))
         return jobs.Worker(self._write)
 
     def _write(self, progress) -> bool:

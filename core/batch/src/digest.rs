@@ -47,7 +47,7 @@ pub fn of_step(step: &Step, document: &str, frames: &Frames) -> String {
     let hash = if step.depends_on_footage() { &frames.hash } else { "" };
     let pattern = if step.names_footage() { &frames.pattern } else { "" };
     let words = step.words("", "");
-    let texts = [env!("CARGO_PKG_VERSION"), document, hash, pattern].into_iter();
+    let texts = [rototoon::VERSION, document, hash, pattern].into_iter();
     of_texts(texts.chain(words.iter().map(String::as_str)))
 }
 

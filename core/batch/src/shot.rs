@@ -221,7 +221,8 @@ impl Work<'_> {
             (false, true) => pipeline::pixel_aspect(&document, &home).to_string(),
             (false, false) => String::new(),
         };
-        pipeline::relocate(&mut document, &home, &self.folder);
+        pipeline::relocate(&mut document, &home, &self.folder)
+            .map_err(|source| WriteError { path: self.folder.clone(), source })?;
         Ok(Frames { hash, pattern: document.scene.footage.pattern })
     }
 

@@ -50,7 +50,7 @@ pub unsafe extern "C" fn rototoon_version(
     unsafe {
         entry(error, || {
             clear(version, std::ptr::null_mut(), "version")?;
-            give(version, RototoonText::new(env!("CARGO_PKG_VERSION")));
+            give(version, RototoonText::new(rototoon::VERSION));
             Ok(())
         })
     }

@@ -14,7 +14,7 @@ use rototoon::pipeline::{self, Kept, Noted, PipelineError, TraceMemory};
 use rototoon::project::fills::FillClicks;
 use rototoon::project::place::{folder_for, folder_of};
 use rototoon::project::seen::Seen;
-use rototoon::project::{Document, Inputs};
+use rototoon::project::{Document, Inputs, WriteError};
 use rototoon::scene::parameters::Stage;
 use rototoon::scene::{FrameNumber, Part, Progress, Scene};
 use rototoon::snap::{CorridorWidth, Follow, SnapError, SnapOptions, snap_scene};
@@ -129,7 +129,8 @@ impl Session {
         inputs.check(path).map_err(Failure::error)?;
         let target = std::path::absolute(path).map_err(Failure::error)?;
         let mut document = self.document.clone();
-        pipeline::relocate(&mut document, &self.folder, &folder_for(&target, &self.folder));
+        pipeline::relocate(&mut document, &self.folder, &folder_for(&target, &self.folder))
+            .map_err(|source| Failure::error(WriteError { path: path.to_owned(), source }))?;
         self.known.save(&document, path).map_err(Failure::error)
     }
 

@@ -3,7 +3,6 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project, render};
 use clap::{Arg, ArgAction, ArgMatches, Command};
-use rototoon::project::output::check_writable;
 use rototoon::scene::{FrameError, FrameNumber};
 use std::ops::RangeInclusive;
 
@@ -38,7 +37,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = project::load(from)?;
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let name = arguments::choice(given, "part");
     let footage = document.scene.footage.clone();
     let index = document.scene.part_index(name);

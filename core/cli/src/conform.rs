@@ -7,7 +7,6 @@ use rototoon::conform::Given;
 use rototoon::geometry::Point;
 use rototoon::pipeline::{self, NewFootage, PipelineError};
 use rototoon::project::output::check_writable;
-use rototoon::project::place::folder_for;
 use rototoon::project::schema::{MAX_COORDINATE, MAX_FPS, MIN_FPS};
 use rototoon::project::{Document, Inputs, write_whole};
 use std::path::{Path, PathBuf};
@@ -122,10 +121,6 @@ fn explained(error: PipelineError, from: &Path) -> Failure {
 
 /// Writes the document. The pattern was given from the current folder.
 fn save(mut document: Document, to: &Path) -> Result<(), Failure> {
-    let here = Path::new("");
-    match std::fs::metadata(to) {
-        Ok(found) if !found.is_file() => pipeline::unfold(&mut document, here),
-        _ => pipeline::relocate(&mut document, here, &folder_for(to, here)),
-    }
+    project::follow(&mut document, Path::new(""), to)?;
     unchanged::save(&document, to)
 }

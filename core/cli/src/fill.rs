@@ -5,7 +5,6 @@ use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{self, FillOptions};
-use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
 use std::ops::RangeInclusive;
 
@@ -41,7 +40,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load_drawn(from)?;
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let sensitivity = given.get_one::<f64>("sensitivity").copied().unwrap_or(1.0);
     let frames = given.get_one::<RangeInclusive<FrameNumber>>("frames").cloned();
     let confidence = given.get_one::<f64>("least_confidence").copied().unwrap_or(0.0);

@@ -109,7 +109,7 @@ fn from_template(path: &Path, template: &Path) -> Option<String> {
         let folder = std::path::absolute(template).ok()?;
         path.strip_prefix(folder.parent()?).ok()?.to_str()?.to_owned()
     } else {
-        moved_pattern(text, Path::new(""), project::folder(template))
+        moved_pattern(text, Path::new(""), project::folder(template)).ok()?
     };
     Path::new(&moved).is_relative().then(|| moved.replace('\\', "/"))
 }

@@ -79,7 +79,7 @@ fn subcommands() -> [(Command, Run); 18] {
 fn program() -> Command {
     Command::new("rototoon")
         .about("Tracks drawn contours from key frames to every frame")
-        .version(env!("CARGO_PKG_VERSION"))
+        .version(rototoon::VERSION)
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommands(subcommands().into_iter().map(|(command, _)| command))

@@ -5,7 +5,8 @@ use crate::unchanged;
 use rototoon::pipeline;
 use rototoon::project::output::check_writable;
 use rototoon::project::place::{folder_for, folder_of};
-use rototoon::project::{Document, Inputs, is_same_file};
+use rototoon::project::{Document, Inputs, WriteError, is_same_file};
+use rototoon::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// Reads a document and prints its warnings.
@@ -80,10 +81,23 @@ pub fn check_report(report: &Path, inputs: &Inputs, [from, to]: [&Path; 2]) -> R
 /// file meanwhile is not written over ([`unchanged`]).
 pub fn save(mut document: Document, from: &Path, to: &Path) -> Result<(), Failure> {
     let home = home(&document, from);
-    match std::fs::metadata(to) {
-        // A pipe or a device: nobody knows the folder of what reads it.
-        Ok(found) if !found.is_file() => pipeline::unfold(&mut document, &home),
-        _ => pipeline::relocate(&mut document, &home, &folder_for(to, &home)),
-    }
+    follow(&mut document, &home, to)?;
     unchanged::save(&document, to)
+}
+
+/// Rewrites the relative footage pattern of a document that is to be written at `to`. So far it begins in `home`.
+pub fn follow(document: &mut Document, home: &Path, to: &Path) -> Result<(), WriteError> {
+    let followed = match std::fs::metadata(to) {
+        // A pipe or a device: nobody knows the folder of what reads it.
+        Ok(found) if !found.is_file() => pipeline::unfold(document, home),
+        _ => pipeline::relocate(document, home, &folder_for(to, home)),
+    };
+    followed.map_err(|source| WriteError { path: to.to_owned(), source })
+}
+
+/// Refuses an output for a document that was read from `from`, if it certainly cannot be written, so that long work fails before it starts.
+pub fn check_output(document: &Document, from: &Path, to: &Path) -> Result<(), WriteError> {
+    check_writable(to)?;
+    let mut bare = Document::new(Scene { footage: document.scene.footage.clone(), parts: Vec::new() });
+    follow(&mut bare, &home(document, from), to)
 }

@@ -6,7 +6,6 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::project::fills::Hue;
-use rototoon::project::output::check_writable;
 use rototoon::project::recolours::Recolour;
 use rototoon::scene::{Colour, FrameError, FrameNumber};
 use std::path::Path;
@@ -56,7 +55,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let (from, to) = (arguments::path(given, "project"), arguments::path(given, "output"));
     let mut document = project::load_drawn(from)?;
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let told = if given.get_flag("remove") { remove(given, &mut document)? } else { add(given, &mut document)? };
     project::save(document, from, to)?;
     line("note", &told);

@@ -4,7 +4,6 @@ use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{ArgMatches, Command};
 use rototoon::pipeline;
-use rototoon::project::output::check_writable;
 use rototoon::scene::parameters::Stage;
 use rototoon::snap::{CorridorWidth, Follow, SnapOptions};
 
@@ -25,7 +24,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load(from)?;
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let document = progress::run(given, from, |bar| {
         pipeline::snap(&mut document, &home, &options, bar).map_err(|error| Failure::of(error, from))?;
         Ok(document)

@@ -7,7 +7,6 @@ use clap::{Arg, ArgMatches, Command};
 use rototoon::lines::{Options, Style};
 use rototoon::pipeline::{self, Kept};
 use rototoon::project::Document;
-use rototoon::project::output::check_writable;
 use rototoon::scene::FrameNumber;
 use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
@@ -61,7 +60,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::load_drawn(from)?;
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let style = match arguments::choice(given, "line_style") {
         "clean" => Style::Clean,
         "rough" => Style::Rough,

@@ -4,7 +4,6 @@ use crate::failure::{Failure, line};
 use crate::{arguments, progress, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use rototoon::pipeline::{self, Report};
-use rototoon::project::output::check_writable;
 use rototoon::project::write_whole;
 use rototoon::scene::Scene;
 use rototoon::scene::parameters::Stage;
@@ -45,7 +44,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let written = given.get_one::<PathBuf>("report");
     let inputs = project::inputs(&document, from);
     inputs.check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     if let Some(report) = written {
         project::check_report(report, &inputs, [from, to])?;
     }

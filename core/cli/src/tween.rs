@@ -7,7 +7,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgMatches, Command};
 use rototoon::geometry::Point;
 use rototoon::pipeline;
-use rototoon::project::output::check_writable;
 use rototoon::tween::between::{Leaving, Options};
 
 /// The subcommand.
@@ -69,7 +68,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     let mut document = project::read(from)?;
     let home = project::home(&document, from);
     project::inputs(&document, from).check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let footage = &document.scene.footage;
     let leaving = match arguments::choice(given, "leaving") {
         "fade" => Leaving::Fade,

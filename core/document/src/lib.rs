@@ -74,6 +74,7 @@ mod plain_clips;
 pub mod problem;
 pub mod recolours;
 mod reshaped;
+mod rights;
 pub mod save;
 pub mod schema;
 pub mod seen;

@@ -10,6 +10,7 @@
 //! removes such files if they are more than an hour old.
 
 use crate::path::{real, slashed};
+use crate::rights;
 use crate::unfinished::Unfinished;
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -83,8 +84,8 @@ fn write(path: &Path, bytes: &[u8], flush: bool, is_changed: &dyn Fn() -> bool) 
         _ => {}
     }
     let target = if existing.is_some() { real(path)? } else { resolved(&end_of_links(path)?)? };
-    if existing.as_ref().is_some_and(|data| data.permissions().readonly()) {
-        return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
+    if let Some(data) = &existing {
+        rights::check(&target, data)?;
     }
     let folder = parent(&target);
     there(folder)?;
@@ -99,7 +100,7 @@ fn write(path: &Path, bytes: &[u8], flush: bool, is_changed: &dyn Fn() -> bool) 
     let file = Unfinished::new(&builder, folder).map_err(nameless)?;
     file.as_file().write_all(bytes)?;
     if let Some(data) = existing {
-        file.as_file().set_permissions(data.permissions())?;
+        rights::keep(file.as_file(), &data)?;
     }
     if flush {
         file.as_file().sync_all()?;
@@ -159,10 +160,10 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let probe = || match fs::metadata(path) {
         Ok(data) if data.is_dir() => Err(io::Error::other("it is a folder, expected a file")),
         Ok(data) if !data.is_file() => Ok(()),
-        Ok(data) if data.permissions().readonly() => {
-            Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"))
+        Ok(data) => {
+            rights::check(path, &data)?;
+            tempfile::tempfile_in(parent(&real(path)?)).map(drop)
         }
-        Ok(_) => tempfile::tempfile_in(parent(&real(path)?)).map(drop),
         // A name that is too long, or a folder that may not be entered.
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         Err(_) => {
@@ -235,7 +236,11 @@ fn parent(path: &Path) -> &Path {
 
 /// Converts a frame pattern relative to folder `from` into one relative to folder `to`; absolute if there is no
 /// relative path. The result has forward slashes.
-pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
+///
+/// # Errors
+///
+/// A folder on the way has a name that no document can hold.
+pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> io::Result<String> {
     let real = |folder: &Path| {
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         real(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned())
@@ -243,7 +248,7 @@ pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
     let pattern = slashed(Path::new(pattern));
     let (from, to) = (real(from), real(to));
     if from == to {
-        return pattern;
+        return Ok(pattern);
     }
     let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
     let way: PathBuf = match shared {
@@ -255,16 +260,34 @@ pub fn moved_pattern(pattern: &str, from: &Path, to: &Path) -> String {
         }
     };
     // A percent sign in a folder's name must not become a place for the frame number.
-    let way = slashed(&way).replace('%', "%%");
-    format!("{}/{pattern}", way.trim_end_matches('/'))
+    let way = text(&way)?.replace('%', "%%");
+    Ok(format!("{}/{pattern}", way.trim_end_matches('/')))
 }
 
 /// A frame pattern relative to a folder as an absolute one, with forward slashes.
-pub fn absolute_pattern(pattern: &str, folder: &Path) -> String {
+///
+/// # Errors
+///
+/// A folder on the way has a name that no document can hold.
+pub fn absolute_pattern(pattern: &str, folder: &Path) -> io::Result<String> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let folder = real(folder).or_else(|_| std::path::absolute(folder)).unwrap_or_else(|_| folder.to_owned());
     // A percent sign in a folder's name must not become a place for the frame number.
-    format!("{}/{}", slashed(&folder).replace('%', "%%").trim_end_matches('/'), slashed(Path::new(pattern)))
+    let way = text(&folder)?.replace('%', "%%");
+    Ok(format!("{}/{}", way.trim_end_matches('/'), slashed(Path::new(pattern))))
+}
+
+/// A path as documents hold it, with nothing in the place of signs that are no text: the footage would not be found there.
+fn text(way: &Path) -> io::Result<String> {
+    if way.to_str().is_some() {
+        return Ok(slashed(way));
+    }
+    let told = "found a folder on the way to the footage whose name is no UTF-8";
+    let message = format!(
+        "{told}, {}, expected the document in the footage's folder, or a folder of another name",
+        way.display()
+    );
+    Err(io::Error::new(io::ErrorKind::InvalidFilename, message))
 }
 
 #[cfg(test)]
@@ -393,11 +416,27 @@ mod tests {
         let (a, b) = (root.path().join("100% a"), root.path().join("b/c"));
         fs::create_dir_all(&a).unwrap();
         fs::create_dir_all(&b).unwrap();
-        assert_eq!(moved_pattern("f_%d.png", &a, &a.join("../100% a")), "f_%d.png");
-        assert_eq!(moved_pattern("f/f_%d.png", &a, &b), "../../100%% a/f/f_%d.png");
-        assert_eq!(moved_pattern("f_%d.png", &b, root.path()), "b/c/f_%d.png");
-        let absolute = absolute_pattern("f/f_%d.png", &a);
+        let moved = |pattern: &str, from: &Path, to: &Path| moved_pattern(pattern, from, to).unwrap();
+        assert_eq!(moved("f_%d.png", &a, &a.join("../100% a")), "f_%d.png");
+        assert_eq!(moved("f/f_%d.png", &a, &b), "../../100%% a/f/f_%d.png");
+        assert_eq!(moved("f_%d.png", &b, root.path()), "b/c/f_%d.png");
+        let absolute = absolute_pattern("f/f_%d.png", &a).unwrap();
         assert!(Path::new(&absolute).is_absolute() && absolute.ends_with("/100%% a/f/f_%d.png"), "{absolute}");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_whose_name_is_no_text_is_named() {
+        use std::os::unix::ffi::OsStrExt;
+        let root = tempfile::tempdir().unwrap();
+        let odd = root.path().join(std::ffi::OsStr::from_bytes(b"sh\xffot"));
+        fs::create_dir_all(odd.join("b")).unwrap();
+        assert_eq!(moved_pattern("f_%d.png", &odd, &odd.join("b")).unwrap(), "../f_%d.png");
+        assert_eq!(moved_pattern("f_%d.png", root.path(), &odd).unwrap(), "../f_%d.png");
+        for refused in [moved_pattern("f_%d.png", &odd, root.path()), absolute_pattern("f_%d.png", &odd)] {
+            let told = refused.unwrap_err().to_string();
+            assert!(told.contains("whose name is no UTF-8") && told.contains("ot, expected"), "{told}");
+        }
     }
 
     #[test]

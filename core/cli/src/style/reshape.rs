@@ -6,9 +6,8 @@ use crate::{arguments, progress, project};
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use rototoon::pipeline::{self, Mirror, PipelineError, ReshapeJob, Reshaped, Side, Sides};
-use rototoon::project::Document;
 use rototoon::project::clips::Clips;
-use rototoon::project::output::check_writable;
+use rototoon::project::{Document, WriteError};
 use rototoon::reshape::puppet::Options;
 use rototoon::scene::{Clip, FrameNumber};
 use std::path::{Path, PathBuf};
@@ -93,11 +92,11 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         inputs.file(path).footage(&other.scene.footage, &project::home(other, path))
     });
     inputs.check(to)?;
-    check_writable(to)?;
+    project::check_output(&document, from, to)?;
     let over = match over {
         Some((path, mut other)) => {
             let (home, own) = (project::home(&other, path), project::home(&document, from));
-            pipeline::relocate(&mut other, &home, &own);
+            pipeline::relocate(&mut other, &home, &own).map_err(|source| WriteError { path: to.to_owned(), source })?;
             Some(other.scene.footage)
         }
         None => None,

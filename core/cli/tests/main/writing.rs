@@ -192,3 +192,29 @@ fn folders_that_have_the_number_of_the_frame_are_looked_for_before_the_work() {
         "1000",
     ]);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_document_leaves_no_folder_whose_name_it_cannot_hold() {
+    use std::os::unix::ffi::OsStrExt;
+    let cartoon = Cartoon::new();
+    let odd = cartoon.folder.path().join(std::ffi::OsStr::from_bytes(b"sh\xffot"));
+    fs::create_dir(&odd).unwrap();
+    fs::rename(cartoon.keyed(), odd.join("project.json")).unwrap();
+    fs::rename(cartoon.path("frames"), odd.join("frames")).unwrap();
+    let track = |out: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rototoon"));
+        command.arg("track").arg(odd.join("project.json")).arg("-o").arg(out).output().unwrap()
+    };
+    let refused = track(&cartoon.path("moved.json"));
+    assert_eq!(refused.status.code(), Some(1), "{}", said(&refused));
+    let told = said(&refused);
+    assert!(
+        told.contains("moved.json: cannot write: found a folder on the way to the footage whose name is no UTF-8"),
+        "{told}"
+    );
+    assert!(!told.contains("frames"), "before the work: {told}");
+    assert!(!cartoon.path("moved.json").exists());
+    let beside = track(&odd.join("tracked.json"));
+    assert!(beside.status.success(), "{}", said(&beside));
+}
