@@ -13,6 +13,7 @@ use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::scene::{Cancelled, Colour, FrameNumber, Progress, Scene};
 use rototoon::track::{Preset, TrackError, TrackOptions, Tracker, Tracking};
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 use std::sync::mpsc::channel;
 use std::sync::{Mutex, PoisonError};
@@ -30,6 +31,8 @@ pub struct Job {
     /// The parts, with only the keys and corrections in the range.
     scene: Scene,
     range: RangeInclusive<FrameNumber>,
+    /// The footage's frames that the source has.
+    frames: RangeInclusive<FrameNumber>,
     /// Whether the user has left out frames of the source.
     is_limited: bool,
     offset: i32,
@@ -69,8 +72,11 @@ impl Job {
             clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
         let offset = parameters.int(c"frameOffset", time)?;
         let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
-        let is_limited = range(clip_range, chosen, offset) != range(clip_range, [0; 2], offset);
+        let all = range(clip_range, [0; 2], offset);
         let range = range(clip_range, chosen, offset);
+        let is_limited = range != all;
+        let footage = &document.scene.footage;
+        let frames = footage.first.max(*all.start())..=footage.last.min(*all.end());
         let scene = within(&document.scene, range.clone());
         if scene.parts.iter().all(|part| part.keys.is_empty()) {
             let (first, last) = (range.start(), range.end());
@@ -82,7 +88,7 @@ impl Job {
         let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
         let live = parameters.int(c"live", time)? != 0;
         let memory = parameters.double(c"liveMemory", time)? * GIGABYTE;
-        Ok(Self { scene, range, is_limited, offset, options, live, memory })
+        Ok(Self { scene, range, frames, is_limited, offset, options, live, memory })
     }
 
     /// The circumstances.
@@ -186,14 +192,27 @@ pub fn run(
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
     let pool = pool.map_err(|error| Failure::Told(format!("cannot start threads to track on: {error}")))?;
     let bar = Bar::new(*effect, "Rototoon: tracking");
-    let clerk = Clerk { effect, source, offset: job.offset, footage: &scene.footage, sums: job.live };
+    let goes_on = || {
+        if !board.cancelled() && !bar.update(board.done()) {
+            board.cancel();
+        }
+        !board.cancelled()
+    };
+    let clerk = Clerk {
+        effect,
+        source,
+        offset: job.offset,
+        footage: &scene.footage,
+        frames: job.frames.clone(),
+        ground: Cell::new(None),
+        sums: job.live,
+        goes_on: &goes_on,
+    };
     let result = std::thread::scope(|scope| {
         let worker = scope.spawn(|| pool.install(|| tracker.track(scene, &frames, &board)));
         loop {
             clerk.serve(&asked, PACE);
-            if !board.cancelled() && !bar.update(board.done()) {
-                board.cancel();
-            }
+            goes_on();
             if worker.is_finished() {
                 break;
             }

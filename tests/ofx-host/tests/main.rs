@@ -18,6 +18,7 @@
 //! - `unpainted`: paint and strokes where there are none, cannot be read, or only some are wanted
 //! - `looks`: the falloff of soft borders, and the colours of parts
 //! - `lives`: instances on several threads, at other places and of other versions
+//! - `paper`: sources with transparent paper
 //! - `page`: the documentation lists the matrix's tests
 //! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
 //! - `saving`: *Save* beside other programs
@@ -42,6 +43,7 @@ mod node;
 mod order;
 mod overlay;
 mod page;
+mod paper;
 mod pixels;
 mod saving;
 mod session;
