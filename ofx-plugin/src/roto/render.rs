@@ -127,7 +127,8 @@ fn draw(
 ) -> Option<()> {
     let (bounds, area) = (rows.window, window(&rows.window));
     let mut go_on = || !aborted.load(Ordering::Relaxed) && !effect.aborted();
-    let mixing = drawn.map(|drawn| Mixing::of(&drawn.settings));
+    let over = sources.source.as_ref().map(|image| image.format).unwrap_or_default();
+    let mixing = drawn.map(|drawn| Mixing::of(&drawn.settings).over(&over));
     let raw = mixing.as_ref().is_some_and(Mixing::is_raw);
     let source = |y: i32, pixels: &mut [Pixel]| {
         pixels.fill(CLEAR);
