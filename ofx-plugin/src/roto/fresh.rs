@@ -1,5 +1,6 @@
 //! A document for a composition that has none yet: the source as its footage, and no parts.
 
+use super::rectangles;
 use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::{Effect, Failure};
 use openfx::sys::image_effect_v1::image_effect::kOfxImageEffectPropFrameRate;
@@ -15,7 +16,7 @@ pub fn document(effect: &Effect) -> Result<Document, Failure> {
     let told = |text: &str| Failure::Told(text.into());
     let missing = || told("connect the footage to the input Source first");
     let range = source.connected().then(|| source.frame_range()).flatten().ok_or_else(missing)?;
-    let region = source.region(range[0]).ok_or_else(missing)?;
+    let region = rectangles::whole(effect, range)?.ok_or_else(missing)?;
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let aspect = effect.clip(OUTPUT)?.pixel_aspect();
     let size = |from: f64, to: f64| ((to - from).round().max(1.0)) as usize;

@@ -2,10 +2,10 @@
 
 use super::parts::selected;
 use super::picture::Picture;
-use super::placement::{self, Placement, window};
+use super::placement::{Placement, window};
 use super::settings::{Channels, Extent, Output, Settings};
 use super::state::State;
-use super::{cels, instance};
+use super::{cels, instance, rectangles};
 use crate::description::{MASK, SOURCE};
 use crate::ofx::effect::Region;
 use crate::ofx::entry::Action;
@@ -93,7 +93,7 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     let whole = match drawn.settings.extent {
         Extent::Shapes => None,
         Extent::Source => source_region(&action.effect, time)?,
-        Extent::Format => placement::format(&action.effect),
+        Extent::Format => rectangles::format(&action.effect),
     };
     if let Some(whole) = whole {
         return action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &whole.to_array());

@@ -8,6 +8,7 @@
 //! - `buttons`: load, save, track
 //! - `live`: edits that are tracked at once, on frames in memory
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
+//! - `crops`: sources that are cropped to their drawing
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
 //! - `feather`: the feather of control points
@@ -30,6 +31,7 @@ mod actions;
 mod buttons;
 mod cels;
 mod common;
+mod crops;
 mod describing;
 mod faults;
 mod feather;
