@@ -5,7 +5,7 @@
 
 use super::fetching::{Clerk, HostFrames};
 use super::film::{Kept, Terms};
-use crate::description::SOURCE;
+use super::shot;
 use crate::ofx::progress::Bar;
 use crate::ofx::{Clip, Effect, Failure};
 use crate::parameters::shared;
@@ -66,16 +66,18 @@ impl Job {
     /// The tracking of a document with the values of the parameters at a time.
     pub fn of(effect: &Effect, document: &Document, time: f64) -> Result<Self, Failure> {
         let parameters = effect.parameters()?;
-        let source = effect.clip(SOURCE)?;
-        let clip_range = source.connected().then(|| source.frame_range()).flatten();
+        let clip_range = shot::of_source(effect)?;
         let clip_range =
             clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
         let offset = parameters.int(c"frameOffset", time)?;
         let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
+        let footage = &document.scene.footage;
+        // A source without end is tracked as far as the document goes.
+        let own = [footage.first, footage.last].map(|frame| f64::from(frame) + f64::from(offset));
+        let clip_range = clip_range.unwrap_or(own);
         let all = range(clip_range, [0; 2], offset);
         let range = range(clip_range, chosen, offset);
         let is_limited = range != all;
-        let footage = &document.scene.footage;
         let frames = footage.first.max(*all.start())..=footage.last.min(*all.end());
         let scene = within(&document.scene, range.clone());
         if scene.parts.iter().all(|part| part.keys.is_empty()) {

@@ -1,9 +1,9 @@
-//! Tests of sources that do not say what the picture is: cropped to their drawing.
+//! Tests of sources that do not say what the picture is: cropped to their drawing, or with frames without end.
 
-use crate::common::{FILTER, MATTE, OK, ROTO, clean, host, kept, p, part, rendered};
+use crate::common::{FILTER, GENERAL, MATTE, OK, ROTO, clean, host, kept, p, part, rendered};
 use rototoon::project::Document;
 use rototoon::scene::{Footage, Scene};
-use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host};
+use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host, Settings};
 
 /// The format of the project.
 const FORMAT: Bounds = Bounds { x1: 0, y1: 0, x2: 192, y2: 108 };
@@ -100,4 +100,77 @@ fn footage_of_another_size_is_stretched_over_the_format_and_not_over_a_crop() {
         assert_eq!(defined(&mut effect, time), [20.0, 30.0, 50.0, 90.0], "{time}");
     }
     clean(&host);
+}
+
+fn endless() -> ClipSettings {
+    let (first, last) = (f64::from(i32::MIN), f64::from(i32::MAX));
+    ClipSettings { x2: FORMAT.x2, y2: FORMAT.y2, first, last, ..ClipSettings::default() }
+}
+
+#[test]
+fn a_source_without_end_has_the_frames_of_the_timeline_or_those_around() {
+    let mut host = host();
+    // Without the suite of the timeline the output's range is known, and if it has no end either, the range of Track.
+    let missing = |suite: &str| Settings { missing_suites: vec![suite.into()], ..Settings::default() };
+    let no_timeline = missing("OfxTimeLineSuite");
+    for (settings, output, chosen, wanted) in [
+        (Settings::default(), endless(), [0.0, 0.0], [0, 100]),
+        (no_timeline.clone(), ClipSettings { first: 3.0, last: 80.0, ..endless() }, [0.0, 0.0], [3, 80]),
+        (no_timeline.clone(), endless(), [5.0, 30.0], [5, 30]),
+        (no_timeline, endless(), [0.0, 0.0], [-480, 520]),
+    ] {
+        host.configure(&settings);
+        host.reload(crate::common::bundles());
+        let mut effect = host.effect(ROTO, FILTER);
+        effect.set_clip("Source", &endless());
+        effect.set_clip("Output", &output);
+        assert_eq!(effect.create(), OK);
+        effect.set("firstFrame", &chosen[..1]);
+        effect.set("lastFrame", &chosen[1..]);
+        draw(&mut effect, 20.0);
+        let footage = kept(&effect).scene.footage;
+        assert_eq!([footage.first, footage.last], wanted, "{settings:?}");
+    }
+    host.configure(&Settings::default());
+    host.reload(crate::common::bundles());
+}
+
+#[test]
+fn a_source_without_end_is_tracked_as_far_as_the_document_goes() {
+    let host = host();
+    let mut effect = host.effect(ROTO, FILTER);
+    let source = ClipSettings { x2: 64, y2: 48, ..endless() };
+    effect.set_clip("Source", &source);
+    effect.set_clip("Output", &source);
+    for frame in 0..=4 {
+        effect.set_frame("Source", f64::from(frame), 64, &crate::common::pattern(0));
+    }
+    assert_eq!(effect.create(), OK);
+    let mut document = Document::new(crate::common::scene());
+    document.scene.parts.truncate(1);
+    document.scene.parts[0].tracks.clear();
+    document.scene.parts[0].keys.retain(|frame, _| *frame == 0);
+    effect.set_text("document", &document.to_json());
+    assert_eq!(effect.press("track"), OK, "{:?}", host.messages());
+    let found = kept(&effect);
+    let tracks: Vec<i32> = found.scene.parts[0].tracks.keys().copied().collect();
+    assert!(tracks.len() > 1 && tracks.iter().all(|frame| (0..=4).contains(frame)), "{tracks:?}");
+    clean(&host);
+}
+
+#[test]
+fn a_contour_that_cannot_be_begun_is_told_where_the_pen_begins_it() {
+    let host = host();
+    let mut effect = host.effect(ROTO, GENERAL);
+    effect.set_clip("Source", &ClipSettings { connected: false, ..ClipSettings::default() });
+    assert_eq!(effect.create(), OK);
+    let mut down = |tool: f64| {
+        effect.set("tool", &[tool]);
+        effect.overlay("OfxInteractActionDraw", true, 1.0, [0.0; 2], 0.1);
+        effect.overlay(DOWN, true, 1.0, [5.0; 2], 0.1);
+        host.messages()
+    };
+    assert_eq!(down(0.0), [""; 0]);
+    let told = down(DRAW);
+    assert!(told.len() == 1 && told[0].contains("connect the footage"), "{told:?}");
 }

@@ -8,7 +8,7 @@
 //! - `buttons`: load, save, track
 //! - `live`: edits that are tracked at once, on frames in memory
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
-//! - `crops`: sources that are cropped to their drawing
+//! - `crops`: sources that are cropped to their drawing, or have frames without end
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
 //! - `feather`: the feather of control points
