@@ -4,6 +4,7 @@
 //! read, drawn and written before the next one, so mattes and cutouts are never in memory as a whole. Each row begins with a
 //! check whether the host has aborted.
 
+use super::instance;
 use super::measured;
 use super::mixing::Mixing;
 use super::placement::window;
@@ -50,6 +51,12 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let scale = measured::of_render((&clips.0, &output), source, asked, time, scale);
     fetched.watch = Watch::of(action, source.map(|(_, image)| image), time, scale);
     let drawn = drawn(effect, time, scale)?;
+    if output.format.layout == Layout::Rgb
+        && let Some(missing) = drawn.as_ref().and_then(|drawn| drawn.settings.missing_without_alpha())
+    {
+        let text = format!("the host wants pictures without alpha from this node: {missing}");
+        instance(effect)?.note(effect, &text, false);
+    }
     let rows = band(drawn.as_ref(), asked, threads::count(effect));
     let bands: Vec<Mutex<Rows>> = output.bands(asked, rows).into_iter().map(Mutex::new).collect();
     let aborted = AtomicBool::new(false);
