@@ -8,6 +8,7 @@ use super::instance;
 use super::measured;
 use super::mixing::Mixing;
 use super::placement::window;
+use super::rectangles;
 use super::regions::{Drawn, drawn, passes_source};
 use super::watch::Watch;
 use crate::description::{MASK, OUTPUT, SOURCE};
@@ -48,7 +49,8 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let mut fetched = Sources::fetch(effect, time)?;
     let clips = (effect.clip(OUTPUT)?, effect.clip(SOURCE)?);
     let source = fetched.source.as_ref().map(|image| (&clips.1, image));
-    let scale = measured::of_render((&clips.0, &output), source, asked, time, scale);
+    let frame = rectangles::format(effect);
+    let scale = measured::of_render((&clips.0, &output), source, frame, asked, time, scale);
     fetched.watch = Watch::of(action, source.map(|(_, image)| image), time, scale);
     let drawn = drawn(effect, time, scale)?;
     if output.format.layout == Layout::Rgb
