@@ -51,6 +51,16 @@ impl Region {
         (both.x1 < both.x2 && both.y1 < both.y2).then_some(both)
     }
 
+    /// The smallest rectangle that contains two.
+    pub fn united(&self, other: &Self) -> Self {
+        Self {
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+            x2: self.x2.max(other.x2),
+            y2: self.y2.max(other.y2),
+        }
+    }
+
     /// Whether it ends on all sides. Generators may have no ends, which OpenFX writes as the greatest whole numbers.
     pub fn is_bounded(&self) -> bool {
         self.to_array().iter().all(|side| side.abs() < f64::from(i32::MAX))

@@ -99,9 +99,6 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     if let Some(whole) = whole {
         return action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &whole.to_array());
     }
-    if drawn.settings.output == Output::Matte && drawn.settings.shows_source() {
-        return Err(Failure::Default);
-    }
     let (bounds, elsewhere) = drawn.picture.bounds();
     if elsewhere {
         return Err(Failure::Default);
@@ -110,6 +107,11 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     if drawn.settings.output == Output::Cutout {
         let source = source_region(&action.effect, time)?;
         region = region.zip(source).and_then(|(region, source)| region.shared(&source));
+    }
+    if drawn.settings.output == Output::Matte && drawn.settings.shows_source() {
+        // The matte is beside the source's channels, or joins its alpha.
+        let both = [region, source_region(&action.effect, time)?];
+        region = both.into_iter().flatten().reduce(|a, b| a.united(&b));
     }
     let region = region.unwrap_or_default();
     action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &region.to_array())
