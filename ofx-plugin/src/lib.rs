@@ -3,7 +3,7 @@
 //! - [`ofx`]: a thin safe layer over the host's C functions
 //! - [`pixels`]: reads and writes pixels of every depth and component
 //! - [`parameters`]: describes the core's effect parameters to the host
-//! - [`description`], [`encoding`]: code that the effects share
+//! - [`description`], [`encoding`], [`ground`]: code that the effects share
 //! - [`lines`]: the effect `org.rototoon.Lines`, which shows the images that a tracker of edges uses
 //! - [`roto`]: the effect `org.rototoon.Roto`, which draws parts as mattes, cutouts, lines and ids
 //! - [`plugins`](mod@plugins): the list of effects that the host reads
@@ -13,6 +13,7 @@
 
 pub mod description;
 pub mod encoding;
+pub mod ground;
 pub mod lines;
 pub mod ofx;
 pub mod parameters;

@@ -13,7 +13,7 @@ use super::stored::Stored;
 use rototoon_image::colour::encode;
 
 /// The grey for what is painted, sRGB-encoded.
-pub(crate) const GREY: f32 = 0.5;
+pub const GREY: f32 = 0.5;
 /// Paper for lines. White is taken where they stand out by so much: lines are drawn for white paper.
 const PAPERS: [f32; 2] = [1.0, 0.0];
 const ON_WHITE: f32 = 0.4;
@@ -28,10 +28,15 @@ const OPAQUE: f32 = 0.5;
 
 /// The grey, sRGB-encoded, for a picture of this width; `None` for one that shows next to nothing, such as an empty cel.
 pub(crate) fn of(picture: &Stored, width: usize) -> Option<f32> {
-    if !picture.has_alpha() || width == 0 {
+    if picture.has_alpha() { of_layer(&picture.layer(), width) } else { Some(GREY) }
+}
+
+/// The grey, sRGB-encoded, for pixels of linear light multiplied by alpha, in rows of this width; `None` for a picture that shows next to
+/// nothing, such as an empty cel.
+pub fn of_layer(pixels: &[[f32; 4]], width: usize) -> Option<f32> {
+    if width == 0 {
         return Some(GREY);
     }
-    let pixels = picture.layer();
     let opaque: Vec<bool> = pixels.iter().map(|p| p[3] >= OPAQUE).collect();
     let height = opaque.len() / width;
     let run = middle(runs(&opaque, width))?;

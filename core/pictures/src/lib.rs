@@ -3,13 +3,14 @@
 //! This crate reads. It computes nothing from what it has read (`rototoon-image`), and it draws and writes no pictures
 //! (`rototoon-render`).
 //!
+//! - [`backdrop`]: the grey behind transparent pixels
 //! - [`decode`](mod@decode): a picture from a file
 //! - [`sequence`]: the pictures of a footage, decoded in parallel, with a cache
 //! - [`store`]: frames that a program keeps for several steps
 
 #![forbid(unsafe_code)]
 
-mod backdrop;
+pub mod backdrop;
 pub mod decode;
 mod error;
 mod holds;

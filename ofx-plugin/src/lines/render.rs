@@ -2,6 +2,7 @@
 
 use crate::description::{OUTPUT, SOURCE};
 use crate::encoding::Encoding;
+use crate::ground::Ground;
 use crate::ofx::entry::Action;
 use crate::ofx::{Bounds, Failure, Image, Parameters};
 use crate::pixels::{CLEAR, Pixel};
@@ -10,6 +11,7 @@ use openfx::sys::image_effect_v1::image_effect::{kOfxImageEffectPropRenderScale,
 use rototoon::image::canny::{CannyOptions, canny};
 use rototoon::image::distance_transform::manhattan;
 use rototoon::image::mean_shift::{MeanShiftOptions, mean_shift};
+use rototoon::pictures::backdrop::GREY;
 use rototoon::scene::{Colour, Raster};
 
 /// Renders a window.
@@ -58,7 +60,7 @@ fn copy(picture: &Raster<Pixel>, bounds: &Bounds, window: &Bounds, y: i32, pixel
     pixels[(shared.x1 - window.x1) as usize..][..from.len()].copy_from_slice(from);
 }
 
-/// The chosen image of the source, with rows from the top.
+/// The chosen image of the source, with rows from the top. Where the source is transparent, its [`Ground`] shows.
 fn seen(source: &Image, parameters: &Parameters, time: f64, scale: f64) -> Result<Raster<Pixel>, Failure> {
     let bounds = source.bounds;
     let mut pixels = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, CLEAR);
@@ -68,7 +70,8 @@ fn seen(source: &Image, parameters: &Parameters, time: f64, scale: f64) -> Resul
         }
     }
     let encoding = Encoding::of(&source.format);
-    let picture: Raster<Colour> = pixels.map(|[r, g, b, _]| [r, g, b].map(|value| encoding.shown(value)));
+    let ground = Ground::of(&pixels, encoding).unwrap_or(Ground::Grey(GREY));
+    let picture: Raster<Colour> = pixels.map(|pixel| ground.colour(pixel, encoding));
     let radius = (f64::from(parameters.int(c"filterRadius", time)?) * scale).round().clamp(1.0, 60.0) as usize;
     let range = parameters.int(c"filterRange", time)?.clamp(0, 100) as usize;
     let filtered = mean_shift(&picture, &MeanShiftOptions { radius, range, ..MeanShiftOptions::default() });
@@ -76,7 +79,7 @@ fn seen(source: &Image, parameters: &Parameters, time: f64, scale: f64) -> Resul
     if output == 0 {
         for (pixel, colour) in pixels.data_mut().iter_mut().zip(filtered.data()) {
             let [r, g, b] = colour.map(|value| encoding.held(value));
-            *pixel = [r, g, b, pixel[3]];
+            *pixel = [r, g, b, if ground == Ground::Unused { pixel[3] } else { 1.0 }];
         }
         return Ok(pixels);
     }

@@ -15,6 +15,9 @@ use openfx::sys::image_effect_v1::message::{kOfxMessageError, kOfxMessageWarning
 use std::ffi::{CStr, c_void};
 use std::marker::PhantomData;
 
+/// Natron's property of a clip: the sides of its format, in pixels.
+const FORMAT: &CStr = c"OfxImageClipPropFormat";
+
 /// An effect. The action decides whether it is a description or an instance.
 #[derive(Clone, Copy)]
 pub struct Effect<'a> {
@@ -46,6 +49,21 @@ impl Region {
             y2: self.y2.min(other.y2),
         };
         (both.x1 < both.x2 && both.y1 < both.y2).then_some(both)
+    }
+
+    /// The smallest rectangle that contains two.
+    pub fn united(&self, other: &Self) -> Self {
+        Self {
+            x1: self.x1.min(other.x1),
+            y1: self.y1.min(other.y1),
+            x2: self.x2.max(other.x2),
+            y2: self.y2.max(other.y2),
+        }
+    }
+
+    /// Whether it ends on all sides. Generators may have no ends, which OpenFX writes as the greatest whole numbers.
+    pub fn is_bounded(&self) -> bool {
+        self.to_array().iter().all(|side| side.abs() < f64::from(i32::MAX))
     }
 
     /// Left, bottom, right, top.
@@ -153,6 +171,13 @@ impl<'a> Effect<'a> {
         suite.is_some_and(|suite| call!(suite, gotoTime, self.handle.cast(), time).is_ok())
     }
 
+    /// First and last frame of the host's timeline.
+    pub fn timeline(&self) -> Option<[f64; 2]> {
+        let (mut first, mut last) = (0.0, 0.0);
+        call!(self.suites.timeline?, getTimeBounds, self.handle.cast(), &mut first, &mut last).ok()?;
+        (first <= last).then_some([first, last])
+    }
+
     /// Attaches data to an instance. [`Self::take_data`] must release it.
     pub fn set_data<T: Sync + Send>(&self, data: Box<T>) -> Result<(), Failure> {
         let properties = self.properties()?;
@@ -224,6 +249,15 @@ impl<'a> Clip<'a> {
         call!(self.suites.effect, clipGetRegionOfDefinition, self.handle, time, &mut rect).ok()?;
         let region = Region { x1: rect.x1, y1: rect.y1, x2: rect.x2, y2: rect.y2 };
         (region.x1 < region.x2 && region.y1 < region.y2).then_some(region)
+    }
+
+    /// The clip's format in canonical coordinates: the rectangle of the whole picture, whatever of it has pixels. `None` where the host
+    /// has no such property; Natron has it.
+    pub fn format(&self) -> Option<Region> {
+        self.properties.dimension(FORMAT).ok().filter(|count| *count == 4)?;
+        let [x1, y1, x2, y2] = self.properties.ints(FORMAT).ok()?.map(f64::from);
+        let aspect = self.pixel_aspect();
+        (x1 < x2 && y1 < y2).then_some(Region { x1: x1 * aspect, y1, x2: x2 * aspect, y2 })
     }
 
     /// The image at a time. `None` if the host has none; callers then use transparent black.

@@ -79,8 +79,8 @@ fn used(effect: &Effect, name: &str, time: f64) -> Result<(), Failure> {
         // What is tracked is stored afterwards, and would replace the other shapes.
         "load" | "project" | "track" | "rename" if instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
         edit if EDITS.contains(&edit) && instance(effect)?.is_tracking() => Err(Failure::Told(BUSY.into())),
-        "load" => load(effect),
-        "project" if is_new_file(effect)? => load(effect),
+        "load" => load(effect, time),
+        "project" if is_new_file(effect)? => load(effect, time),
         "save" => saving::save(effect),
         "track" => track::track(effect, time),
         edit if EDITS.contains(&edit) => edits::press(effect, edit, time),
@@ -137,10 +137,10 @@ pub fn chosen(effect: &Effect) -> Result<PathBuf, Failure> {
 /// folder of its own.
 ///
 /// A file of shapes of another program is read too. Its shapes become parts of the composition's document.
-fn load(effect: &Effect) -> Result<(), Failure> {
+fn load(effect: &Effect, time: f64) -> Result<(), Failure> {
     let path = chosen(effect)?;
     if let Some(extension) = foreign(&path) {
-        return import(effect, &path, &extension);
+        return import(effect, &path, &extension, time);
     }
     // The mark comes first: what is written in between counts as a change.
     let mark = Mark::of(&path).map_or_else(String::new, |mark| mark.to_string());
@@ -155,11 +155,11 @@ pub fn foreign(path: &Path) -> Option<String> {
     ShapeFormat::of(&extension, 0).map(|_| extension)
 }
 
-fn import(effect: &Effect, path: &Path, extension: &str) -> Result<(), Failure> {
+fn import(effect: &Effect, path: &Path, extension: &str, time: f64) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::Told(format!("{}: {error}", path.display()));
     let mut document = match instance(effect)?.document_of_text(&effect.parameters()?)? {
         Some(document) => Document::clone(&document),
-        None => fresh::document(effect)?,
+        None => fresh::document(effect, time)?,
     };
     Reach::of(effect)?.widen_own(&mut document.scene.footage);
     // The file has the composition's frames.

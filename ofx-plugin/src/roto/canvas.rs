@@ -128,7 +128,9 @@ fn outer_edge(sheet: &Sheet, part: &Part, points: &[Point], widths: &[f64], colo
         return;
     }
     let settings = &sheet.shown.settings;
-    let all = settings.feather + settings.look(&part.name).feather;
+    // These are in the host's pixels, and the points' own widths in those of the footage.
+    let placement = &sheet.shown.placement;
+    let all = placement.length(settings.feather + settings.look(&part.name).feather) / placement.magnification();
     let moved = part.points_at(settings.document_time as FrameNumber).is_none_or(|own| own != points);
     let paths = if moved { None } else { segments_at(part, settings.document_time, settings.curves) };
     let sides = || polyline::segments(points, true).map(|(a, b)| vec![a, b]).collect();

@@ -230,7 +230,7 @@ impl Bench {
         let (instance, parameters) = (instance(effect)?, effect.parameters()?);
         let document = match instance.document(&parameters)? {
             Some(document) => document,
-            None => Arc::new(Loaded::new(fresh::document(effect)?)),
+            None => Arc::new(Loaded::new(fresh::document(effect, time)?)),
         };
         let state = instance.state(&parameters)?;
         let settings = Settings::read(&parameters, time, &state)?;

@@ -1,5 +1,8 @@
 //! Fetches the source's frames for the tracker, in display colours and at the footage's size.
 //!
+//! Transparent pixels are laid over the same ground on all frames, that of the first frame that shows anything, as in the command
+//! line: paper that changed would look like motion.
+//!
 //! The tracker's threads ask for frames, and wait. The thread of the action answers, because hosts do not allow the calls on
 //! other threads.
 
@@ -7,10 +10,14 @@ use super::film::{Frame, Kept, Picture};
 use super::placement::Placement;
 use super::sums::Sums;
 use crate::encoding::Encoding;
-use crate::ofx::{Clip, Effect, Failure, Image};
+use crate::ground::{Ground, is_transparent};
+use crate::ofx::{Clip, Effect, Image};
 use crate::pixels::{CLEAR, Pixel};
 use rototoon::geometry::Point;
-use rototoon::scene::{Colour, Footage, FrameError, FrameNumber, FrameSource, Raster};
+use rototoon::pictures::backdrop::GREY;
+use rototoon::scene::{Footage, FrameError, FrameNumber, FrameSource, Raster};
+use std::cell::Cell;
+use std::ops::RangeInclusive;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -70,8 +77,22 @@ pub struct Clerk<'a> {
     pub offset: i32,
     /// The footage whose size the pictures get.
     pub footage: &'a Footage,
+    /// The footage's frames that the source has. The first of them that shows anything says what lies behind all of them.
+    pub frames: RangeInclusive<FrameNumber>,
+    /// What lies behind transparent pixels, once it is known.
+    pub ground: Cell<Option<Ground>>,
     /// Whether to sum the host's pixels, for later comparisons.
     pub sums: bool,
+    /// Whether the user has not cancelled the work.
+    pub goes_on: &'a dyn Fn() -> bool,
+}
+
+/// A frame of the source at the footage's size: premultiplied pixels with the host's colours.
+struct Seen {
+    pixels: Raster<Pixel>,
+    encoding: Encoding,
+    /// Whether nothing of it is transparent.
+    is_solid: bool,
 }
 
 impl Clerk<'_> {
@@ -86,32 +107,62 @@ impl Clerk<'_> {
     }
 
     fn fetch(&self, number: FrameNumber) -> Result<Frame, FrameError> {
-        let time = f64::from(number) + f64::from(self.offset);
-        let failed = |failure: Failure| unreadable(number, &failure.to_string());
-        let source = self.source.as_ref().ok_or_else(|| unreadable(number, "it is not in memory"))?;
-        let image = source.image(time).map_err(failed)?;
-        let image = image.ok_or_else(|| unreadable(number, "the host has no image of this frame"))?;
-        let placement = Placement::of(self.effect, self.footage, time, [1.0; 2]).map_err(failed)?;
+        let image = self.image(number)?;
+        let seen = self.seen(number, &image)?;
         let sums = self.sums.then(|| Arc::new(Sums::of(&image)));
-        Ok(Frame { number, picture: Arc::new(self.picture(&image, &placement)), sums })
+        drop(image);
+        let ground = if seen.is_solid { Ground::Unused } else { self.ground(number, &seen) };
+        let picture = seen.pixels.map(|pixel| ground.colour(pixel, seen.encoding));
+        Ok(Frame { number, picture: Arc::new(picture), sums })
     }
 
-    /// Converts the image to a picture of the footage's size, in display colours.
-    fn picture(&self, image: &Image, placement: &Placement) -> Raster<Colour> {
-        let (width, height) = (self.footage.width, self.footage.height);
-        let (bounds, encoding) = (image.bounds, Encoding::of(&image.format));
+    fn image(&self, number: FrameNumber) -> Result<Image<'_>, FrameError> {
+        let source = self.source.as_ref().ok_or_else(|| unreadable(number, "it is not in memory"))?;
+        let image = source.image(self.time(number)).map_err(|failure| unreadable(number, &failure.to_string()))?;
+        image.ok_or_else(|| unreadable(number, "the host has no image of this frame"))
+    }
+
+    fn time(&self, number: FrameNumber) -> f64 {
+        f64::from(number) + f64::from(self.offset)
+    }
+
+    /// What lies behind the transparent pixels of all frames. `at` is a frame that was seen.
+    fn ground(&self, at: FrameNumber, seen: &Seen) -> Ground {
+        if let Some(known) = self.ground.get() {
+            return known;
+        }
+        let of = |seen: &Seen| Ground::of(&seen.pixels, seen.encoding);
+        let other = |frame| of(&self.seen(frame, &self.image(frame).ok()?).ok()?);
+        let (first, last) = (*self.frames.start(), *self.frames.end());
+        let before = (first..=last).take_while(|frame| *frame < at && (self.goes_on)()).find_map(other);
+        let after = || (first..=last).filter(|frame| *frame > at).take_while(|_| (self.goes_on)()).find_map(other);
+        let found = before.or_else(|| of(seen)).or_else(after);
+        let found = found.unwrap_or(Ground::Grey(GREY));
+        self.ground.set(Some(found));
+        found
+    }
+
+    /// Samples the image at the footage's size. It is transparent outside of its bounds, unless it is opaque everywhere: then
+    /// its border goes on.
+    fn seen(&self, number: FrameNumber, image: &Image) -> Result<Seen, FrameError> {
+        let placement = Placement::of(self.effect, self.footage, self.time(number), [1.0; 2]);
+        let placement = placement.map_err(|failure| unreadable(number, &failure.to_string()))?;
+        let bounds = image.bounds;
         let mut rows = Raster::new(bounds.width(), (bounds.y2 - bounds.y1) as usize, CLEAR);
         for (row, y) in (bounds.y1..bounds.y2).rev().enumerate() {
             if let Some(bytes) = image.row(y, bounds.x1, bounds.x2) {
                 image.format.read(bytes, rows.row_mut(row));
             }
         }
+        let is_solid = !rows.data().iter().any(is_transparent);
         let corner = Point::new(f64::from(bounds.x1), f64::from(-bounds.y2));
-        Raster::from_fn(width, height, |x, y| {
+        let most = Point::new(rows.width() as f64, rows.height() as f64) - Point::splat(0.5);
+        let is_inside = |p: Point| p.min_element() >= -0.5 && (most - p).min_element() >= 0.0;
+        let pixels = Raster::from_fn(self.footage.width, self.footage.height, |x, y| {
             let p = placement.place(Point::new(x as f64 + 0.5, y as f64 + 0.5)) - corner - Point::splat(0.5);
-            let [r, g, b, _] = sample(&rows, p);
-            [r, g, b].map(|value| encoding.shown(value))
-        })
+            if is_solid || is_inside(p) { sample(&rows, p) } else { CLEAR }
+        });
+        Ok(Seen { pixels, encoding: Encoding::of(&image.format), is_solid })
     }
 }
 

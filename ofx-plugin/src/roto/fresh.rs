@@ -1,9 +1,11 @@
 //! A document for a composition that has none yet: the source as its footage, and no parts.
 
+use super::{rectangles, shot};
 use crate::description::{OUTPUT, SOURCE};
 use crate::ofx::{Effect, Failure};
 use openfx::sys::image_effect_v1::image_effect::kOfxImageEffectPropFrameRate;
 use rototoon::project::Document;
+use rototoon::project::schema::MAX_FRAME_NUMBER;
 use rototoon::scene::{Footage, FrameNumber, Scene};
 
 /// Stands for the frames of the source, which the host has and not a folder.
@@ -14,17 +16,20 @@ pub fn is_own(footage: &Footage) -> bool {
     footage.pattern == PATTERN
 }
 
-/// An empty document for the source.
-pub fn document(effect: &Effect) -> Result<Document, Failure> {
+/// Frame numbers of documents are not farther from 0.
+const FARTHEST: f64 = MAX_FRAME_NUMBER as f64;
+
+/// An empty document for the source, made at a time of the composition.
+pub fn document(effect: &Effect, time: f64) -> Result<Document, Failure> {
     let source = effect.clip(SOURCE)?;
     let told = |text: &str| Failure::Told(text.into());
     let missing = || told("connect the footage to the input Source first");
-    let range = source.connected().then(|| source.frame_range()).flatten().ok_or_else(missing)?;
-    let region = source.region(range[0]).ok_or_else(missing)?;
+    let range = shot::frames(effect, time)?.ok_or_else(missing)?;
+    let region = rectangles::whole(effect, range)?.ok_or_else(missing)?;
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let aspect = effect.clip(OUTPUT)?.pixel_aspect();
     let size = |from: f64, to: f64| ((to - from).round().max(1.0)) as usize;
-    let frame = |time: f64| (time - f64::from(offset)).clamp(-1e6, 1e6) as FrameNumber;
+    let frame = |time: f64| (time - f64::from(offset)).clamp(-FARTHEST, FARTHEST) as FrameNumber;
     let fps = source.properties.double(kOfxImageEffectPropFrameRate, 0).ok();
     let footage = Footage {
         pattern: PATTERN.into(),

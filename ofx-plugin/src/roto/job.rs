@@ -6,7 +6,7 @@
 use super::fetching::{Clerk, HostFrames};
 use super::film::{Kept, Terms};
 use super::reach::{Reach, widen_to_tracks};
-use crate::description::SOURCE;
+use super::shot;
 use crate::ofx::progress::Bar;
 use crate::ofx::{Clip, Effect, Failure};
 use crate::parameters::shared;
@@ -14,6 +14,7 @@ use rototoon::pipeline;
 use rototoon::project::Document;
 use rototoon::scene::{Cancelled, Colour, FrameNumber, Progress, Scene};
 use rototoon::track::{Preset, TrackError, TrackOptions, Tracker, Tracking};
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 use std::sync::mpsc::channel;
 use std::sync::{Mutex, PoisonError};
@@ -31,6 +32,8 @@ pub struct Job {
     /// The parts, with only the keys and corrections in the range.
     scene: Scene,
     range: RangeInclusive<FrameNumber>,
+    /// The footage's frames that the source has.
+    frames: RangeInclusive<FrameNumber>,
     /// Whether the user has left out frames of the source.
     is_limited: bool,
     offset: i32,
@@ -66,14 +69,19 @@ impl Job {
     /// The tracking of a document with the values of the parameters at a time.
     pub fn of(effect: &Effect, document: &Document, time: f64) -> Result<Self, Failure> {
         let parameters = effect.parameters()?;
-        let source = effect.clip(SOURCE)?;
-        let clip_range = source.connected().then(|| source.frame_range()).flatten();
+        let clip_range = shot::of_source(effect)?;
         let clip_range =
             clip_range.ok_or_else(|| Failure::Told("connect the footage to the input Source first".into()))?;
         let offset = parameters.int(c"frameOffset", time)?;
         let chosen = [parameters.int(c"firstFrame", time)?, parameters.int(c"lastFrame", time)?];
-        let is_limited = range(clip_range, chosen, offset) != range(clip_range, [0; 2], offset);
+        let footage = &document.scene.footage;
+        // A source without end is tracked as far as the document goes.
+        let own = [footage.first, footage.last].map(|frame| f64::from(frame) + f64::from(offset));
+        let clip_range = clip_range.unwrap_or(own);
+        let all = range(clip_range, [0; 2], offset);
         let range = range(clip_range, chosen, offset);
+        let is_limited = range != all;
+        let frames = footage.first.max(*all.start())..=footage.last.min(*all.end());
         let scene = within(&document.scene, range.clone());
         if scene.parts.iter().all(|part| part.keys.is_empty()) {
             let (first, last) = (range.start(), range.end());
@@ -85,7 +93,8 @@ impl Job {
         let options = TrackOptions { preset: preset.unwrap_or_default(), ..TrackOptions::default() };
         let live = parameters.int(c"live", time)? != 0;
         let memory = parameters.double(c"liveMemory", time)? * GIGABYTE;
-        Ok(Self { scene, range, is_limited, offset, reach: Reach::of(effect)?, options, live, memory })
+        let reach = Reach::of(effect)?;
+        Ok(Self { scene, range, frames, is_limited, offset, reach, options, live, memory })
     }
 
     /// The circumstances.
@@ -191,14 +200,27 @@ pub fn run(
     let pool = rayon::ThreadPoolBuilder::new().thread_name(|index| format!("rototoon-{index}")).build();
     let pool = pool.map_err(|error| Failure::Told(format!("cannot start threads to track on: {error}")))?;
     let bar = Bar::new(*effect, "Rototoon: tracking");
-    let clerk = Clerk { effect, source, offset: job.offset, footage: &scene.footage, sums: job.live };
+    let goes_on = || {
+        if !board.cancelled() && !bar.update(board.done()) {
+            board.cancel();
+        }
+        !board.cancelled()
+    };
+    let clerk = Clerk {
+        effect,
+        source,
+        offset: job.offset,
+        footage: &scene.footage,
+        frames: job.frames.clone(),
+        ground: Cell::new(None),
+        sums: job.live,
+        goes_on: &goes_on,
+    };
     let result = std::thread::scope(|scope| {
         let worker = scope.spawn(|| pool.install(|| tracker.track(scene, &frames, &board)));
         loop {
             clerk.serve(&asked, PACE);
-            if !board.cancelled() && !bar.update(board.done()) {
-                board.cancel();
-            }
+            goes_on();
             if worker.is_finished() {
                 break;
             }

@@ -7,8 +7,11 @@ use super::settings::{Channels, Output, Settings, SourceAlpha};
 use super::state::State;
 use crate::encoding::Encoding;
 use crate::ofx::{Failure, Parameters};
-use crate::pixels::{Format, Pixel};
+use crate::pixels::{Format, Pixel, Premultiplication};
 use rototoon::render::paint::multiplied;
+
+/// Less alpha is none: it is below a step of 16 bits.
+const TRACE: f32 = 1.0 / 65536.0;
 
 /// How a picture and the source become the output.
 #[derive(Clone, Copy, Debug)]
@@ -17,13 +20,20 @@ pub struct Mixing {
     channels: Channels,
     alpha: SourceAlpha,
     premultiply: bool,
+    /// Whether the source's colours are multiplied by its alpha.
+    is_multiplied: bool,
 }
 
 impl Mixing {
     /// As the settings say.
     pub fn of(settings: &Settings) -> Self {
         let Settings { output, channels, source_alpha: alpha, premultiply, .. } = *settings;
-        Self { output, channels, alpha, premultiply }
+        Self { output, channels, alpha, premultiply, is_multiplied: false }
+    }
+
+    /// The same over a source of this format.
+    pub fn over(self, source: &Format) -> Self {
+        Self { is_multiplied: source.premultiplication == Premultiplication::Multiplied, ..self }
     }
 
     /// As the parameters say.
@@ -77,7 +87,11 @@ impl Mixing {
         let mut pixel = below;
         pixel[channel] = value;
         if channel == 3 && self.premultiply {
-            pixel[..3].iter_mut().for_each(|colour| *colour *= value);
+            // Where the source's alpha is in the value, its colours must not have it a second time. Where it is ignored, it does not
+            // count for the colours either.
+            let has_own = self.alpha != SourceAlpha::Ignore && self.is_multiplied && below[3] > TRACE;
+            let share = if has_own { value / below[3] } else { value };
+            pixel[..3].iter_mut().for_each(|colour| *colour *= share);
         }
         pixel
     }
@@ -103,4 +117,44 @@ fn light(pixel: Pixel, encoding: &Encoding) -> Pixel {
     }
     let [r, g, b] = [r, g, b].map(|value| encoding.held(value / alpha) * alpha);
     [r, g, b, alpha]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_premultiplied_and_a_straight_source_become_the_same_premultiplied_picture() {
+        let [multiplied, straight] = [Premultiplication::Multiplied, Premultiplication::Separate]
+            .map(|premultiplication| Format { premultiplication, ..Format::default() });
+        for (alpha, inside, outside) in [
+            (SourceAlpha::Multiply, [0.5, 0.25, 0.5, 0.5], [0.0; 4]),
+            (SourceAlpha::Add, [1.0, 0.5, 1.0, 1.0], [0.5, 0.25, 0.5, 0.5]),
+        ] {
+            let mixing = Mixing {
+                output: Output::Matte,
+                channels: Channels::One(3),
+                alpha,
+                premultiply: true,
+                is_multiplied: false,
+            };
+            for (value, wanted) in [(1.0, inside), (0.0, outside)] {
+                assert_eq!(mixing.over(&multiplied).matte(value, [0.5, 0.25, 0.5, 0.5]), wanted, "{alpha:?}");
+                assert_eq!(mixing.over(&straight).matte(value, [1.0, 0.5, 1.0, 0.5]), wanted, "{alpha:?}");
+            }
+            // Light without alpha is not divided by it.
+            for trace in [0.0, 1e-40] {
+                let light = mixing.over(&multiplied).matte(1.0, [0.5, 0.0, 0.0, trace]);
+                assert!(light.iter().all(|value| (0.0..=1.0).contains(value)), "{light:?}");
+            }
+        }
+        let ignoring = Mixing {
+            output: Output::Matte,
+            channels: Channels::One(3),
+            alpha: SourceAlpha::Ignore,
+            premultiply: true,
+            is_multiplied: true,
+        };
+        assert_eq!(ignoring.matte(0.5, [0.5, 0.25, 0.5, 0.0]), [0.25, 0.125, 0.25, 0.5]);
+    }
 }

@@ -5,7 +5,7 @@
 //! - [`settings`]: the parameters' values at a time
 //! - [`instance`](mod@instance): the data of an instance: its document, and the messages that the user has seen
 //! - [`stored`]: encodes the document as a text that the host stores
-//! - [`placement`]: places the footage's pixels in the host's picture
+//! - [`placement`]: places the footage's pixels in the host's picture; [`rectangles`]: on which rectangle; [`shot`]: the frames of a shot
 //! - [`parts`]: selects parts by name
 //! - [`picture`]: draws the parts
 //! - [`regions`]: the regions that are drawn, and the regions of the source that they need
@@ -62,11 +62,13 @@ pub mod pen;
 pub mod picture;
 pub mod placement;
 pub mod reach;
+pub mod rectangles;
 pub mod regions;
 pub mod render;
 pub mod saving;
 pub mod settings;
 pub mod shared;
+pub mod shot;
 pub mod spans;
 pub mod stale;
 pub mod standing;

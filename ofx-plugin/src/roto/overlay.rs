@@ -54,7 +54,7 @@ impl Shown {
         let quiet = |_| Failure::Default;
         let document = match instance.document(&parameters).map_err(quiet)? {
             Some(document) => document,
-            None => Arc::new(Loaded::new(fresh::document(&view.effect).map_err(quiet)?)),
+            None => Arc::new(Loaded::new(fresh::document(&view.effect, view.time)?)),
         };
         let state = instance.state(&parameters).map_err(quiet)?;
         let settings = Settings::read(&parameters, view.time, &state)?;
@@ -141,7 +141,10 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         // The commonest event by far.
         return Err(Failure::Default);
     }
-    let shown = Shown::of(view)?;
+    let shown = match Shown::of(view) {
+        Err(Failure::Told(text)) => return cannot_draw(view, &text),
+        shown => shown?,
+    };
     if view.event == Event::Draw {
         // A copy, so that the host may call back while it draws.
         let mut editor = instance.editor().clone();
@@ -176,6 +179,16 @@ pub fn perform(view: &View) -> Result<(), Failure> {
         view.redraw();
     }
     result
+}
+
+/// Nothing can be drawn, and the user is told so where the pen begins a contour.
+fn cannot_draw(view: &View, text: &str) -> Result<(), Failure> {
+    let draws = matches!(tool(view.effect.parameters()?.int(c"tool", view.time)?), Tool::Contour | Tool::Freehand);
+    if view.event != Event::Down || !draws {
+        return Err(Failure::Default);
+    }
+    view.effect.complain(text);
+    Ok(())
 }
 
 /// What an event makes of the editor.

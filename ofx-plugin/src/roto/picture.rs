@@ -282,10 +282,11 @@ impl Drawing<'_> {
         }
     }
 
-    /// The feather of a part along its contour, where it is at the frame's time: also under motion blur.
+    /// The feather of a part along its contour, where it is at the frame's time: also under motion blur. Its widths are in pixels of the
+    /// footage, and are stretched with it.
     fn feather_pieces(&self, part: &Part) -> Vec<Piece> {
         let (time, curves) = (self.settings.document_time, self.settings.curves);
-        feather_pieces(part, time, curves, &|p| self.placement.place(p), self.placement.length(1.0))
+        feather_pieces(part, time, curves, &|p| self.placement.place(p), self.placement.magnification())
     }
 
     fn ids(&self, order: &[usize]) -> Picture {

@@ -5,12 +5,10 @@
 //! aspect ratio. Drawing uses **pixels with y turned down**: row `v` is the host's row `-1 - v`. So it does not depend on
 //! the height of a picture.
 
-use crate::description::{OUTPUT, SOURCE};
+use super::rectangles::{self, Rectangles};
+use crate::description::OUTPUT;
 use crate::ofx::effect::Region;
-use crate::ofx::{Bounds, Effect, Failure, host};
-use openfx::sys::image_effect_v1::image_effect::{
-    kOfxImageEffectPropProjectOffset, kOfxImageEffectPropProjectSize, kOfxImageEffectPropSupportsMultiResolution,
-};
+use crate::ofx::{Bounds, Effect, Failure};
 use rototoon::geometry::Point;
 use rototoon::render::coverage::Window;
 use rototoon::render::mask;
@@ -28,26 +26,14 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places the footage. If the source has the footage's size, the footage is where the source is. Otherwise, if the
-    /// project's format has that size, it is where the format is. Otherwise it is stretched over the source, or over the
-    /// format if there is no source.
+    /// Places the footage on the rectangle of the whole picture ([`Rectangles::chosen`]).
     pub fn of(effect: &Effect, footage: &Footage, time: f64, render_scale: [f64; 2]) -> Result<Self, Failure> {
-        let source = effect.clip(SOURCE)?;
         let aspect = effect.clip(OUTPUT)?.pixel_aspect();
-        let region = if source.connected() { source.region(time) } else { None };
-        let mut known: Vec<Region> = region.into_iter().chain(format(effect)).collect();
-        if one_size() && region.is_some() {
-            // The source fills the picture, whatever the project's format says.
-            known.truncate(1);
-        }
         let own = Region { x1: 0.0, y1: 0.0, x2: footage.width as f64 * aspect, y2: footage.height as f64 };
-        let fits = |region: &&Region| {
-            ((region.x2 - region.x1) / aspect - footage.width as f64).abs() < 0.5
-                && (region.y2 - region.y1 - footage.height as f64).abs() < 0.5
-        };
-        let fitting = known.iter().find(fits);
-        let region = fitting.or(known.first()).unwrap_or(&own);
-        Ok(Self::new(footage, region, aspect, render_scale, fitting.is_some() || known.is_empty()))
+        let known = Rectangles::of(effect, time)?;
+        let chosen = known.chosen([own.x2, own.y2], || rectangles::first_region(effect, footage, time));
+        let (region, matches) = chosen.unwrap_or((own, true));
+        Ok(Self::new(footage, &region, aspect, render_scale, matches))
     }
 
     /// Stretches the footage over a region of canonical coordinates. `aspect` is the width of a pixel over its height.
@@ -111,21 +97,6 @@ pub fn window(bounds: &Bounds) -> Window {
     // Turned down in 64 bits: a host may say "infinite" with the least 32-bit number, which has no positive counterpart.
     let [left, y1, right, y2] = [bounds.x1, bounds.y1, bounds.x2, bounds.y2].map(i64::from);
     Window { left, top: -y2, right, bottom: -y1 }
-}
-
-/// Whether the host has pictures of one size only.
-fn one_size() -> bool {
-    let multi = host::properties().and_then(|host| host.int(kOfxImageEffectPropSupportsMultiResolution, 0));
-    multi.is_ok_and(|multi| multi == 0)
-}
-
-/// The rectangle of the project's format.
-pub fn format(effect: &Effect) -> Option<Region> {
-    let properties = effect.properties().ok()?;
-    let [width, height] = properties.doubles(kOfxImageEffectPropProjectSize).ok()?;
-    let [x, y] = properties.doubles(kOfxImageEffectPropProjectOffset).unwrap_or_default();
-    let whole = Region { x1: x, y1: y, x2: x + width, y2: y + height };
-    (whole.x1 < whole.x2 && whole.y1 < whole.y2).then_some(whole)
 }
 
 #[cfg(test)]

@@ -2,17 +2,18 @@
 
 use super::parts::selected;
 use super::picture::Picture;
-use super::placement::{self, Placement, window};
+use super::placement::{Placement, window};
 use super::settings::{Channels, Extent, Output, Settings};
 use super::state::State;
-use super::{cels, instance};
+use super::{cels, instance, rectangles};
 use crate::description::{MASK, SOURCE};
 use crate::ofx::effect::Region;
 use crate::ofx::entry::Action;
-use crate::ofx::{Bounds, Effect, Failure, host};
+use crate::ofx::{Bounds, Clip, Effect, Failure, host};
 use openfx::sys::generic::core::{kOfxPropName, kOfxPropTime};
 use openfx::sys::image_effect_v1::image_effect::{
-    kOfxImageEffectFrameVarying, kOfxImageEffectPropPreMultiplication, kOfxImageEffectPropRegionOfDefinition,
+    kOfxImageClipPropUnmappedComponents, kOfxImageComponentRGB, kOfxImageEffectFrameVarying,
+    kOfxImageEffectPropComponents, kOfxImageEffectPropPreMultiplication, kOfxImageEffectPropRegionOfDefinition,
     kOfxImageEffectPropRegionOfInterest, kOfxImageEffectPropRenderScale, kOfxImageEffectPropRenderWindow,
     kOfxImageEffectPropSupportsMultiResolution, kOfxImageOpaque, kOfxImagePreMultiplied, kOfxImageUnPreMultiplied,
 };
@@ -93,13 +94,10 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     let whole = match drawn.settings.extent {
         Extent::Shapes => None,
         Extent::Source => source_region(&action.effect, time)?,
-        Extent::Format => placement::format(&action.effect),
+        Extent::Format => rectangles::format(&action.effect),
     };
     if let Some(whole) = whole {
         return action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &whole.to_array());
-    }
-    if drawn.settings.output == Output::Matte && drawn.settings.shows_source() {
-        return Err(Failure::Default);
     }
     let (bounds, elsewhere) = drawn.picture.bounds();
     if elsewhere {
@@ -109,6 +107,11 @@ pub fn definition(action: &Action) -> Result<(), Failure> {
     if drawn.settings.output == Output::Cutout {
         let source = source_region(&action.effect, time)?;
         region = region.zip(source).and_then(|(region, source)| region.shared(&source));
+    }
+    if drawn.settings.output == Output::Matte && drawn.settings.shows_source() {
+        // The matte is beside the source's channels, or joins its alpha.
+        let both = [region, source_region(&action.effect, time)?];
+        region = both.into_iter().flatten().reduce(|a, b| a.united(&b));
     }
     let region = region.unwrap_or_default();
     action.output.set_doubles(kOfxImageEffectPropRegionOfDefinition, &region.to_array())
@@ -182,7 +185,15 @@ pub fn identity(action: &Action) -> Result<(), Failure> {
     action.output.set_double(kOfxPropTime, 0, time)
 }
 
-/// Sets the format of the output. Mattes, ids, paint and strokes alone, and a cutout of an opaque source are premultiplied; other
+/// The components of what is connected to a clip; empty if nothing is.
+fn components(clip: &Clip) -> String {
+    let read = |name| clip.properties.text(name, 0).ok();
+    let connected = clip.connected();
+    let read = || read(kOfxImageClipPropUnmappedComponents).or_else(|| read(kOfxImageEffectPropComponents));
+    connected.then(read).flatten().unwrap_or_default()
+}
+
+/// Sets the format of the output. It has alpha where the picture does, also over a source without. Mattes, ids, paint and strokes alone, and a cutout of an opaque source are premultiplied; other
 /// outputs are as the source. Frames are declared to vary, because they differ although no parameter is animated.
 pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let effect = &action.effect;
@@ -190,7 +201,14 @@ pub fn clip_preferences(action: &Action) -> Result<(), Failure> {
     let output = settings.output;
     let source = effect.clip(SOURCE)?;
     let premultiplication = source.properties.text(kOfxImageEffectPropPreMultiplication, 0).unwrap_or_default();
-    let opaque = !source.connected() || premultiplication.as_bytes() == kOfxImageOpaque.to_bytes();
+    let components = components(&source);
+    let opaque = !source.connected()
+        || premultiplication.as_bytes() == kOfxImageOpaque.to_bytes()
+        || components.as_bytes() == kOfxImageComponentRGB.to_bytes();
+    if let Some(needed) = settings.components(components.as_bytes()) {
+        // A host that refuses gives other pictures, and rendering says what is missing there.
+        let _ = action.output.set_name(c"OfxImageClipPropComponents_Output", 0, needed);
+    }
     // Where there is no source, its paint shows alone.
     let transparent = output == Output::Cutout && opaque || output == Output::Painted && !source.connected();
     if output == Output::Matte && settings.channels == Channels::One(3) {

@@ -4,9 +4,11 @@
 //! read, drawn and written before the next one, so mattes and cutouts are never in memory as a whole. Each row begins with a
 //! check whether the host has aborted.
 
+use super::instance;
 use super::measured;
 use super::mixing::Mixing;
 use super::placement::window;
+use super::rectangles;
 use super::regions::{Drawn, drawn, passes_source};
 use super::watch::Watch;
 use crate::description::{MASK, OUTPUT, SOURCE};
@@ -47,9 +49,16 @@ pub fn render(action: &Action) -> Result<(), Failure> {
     let mut fetched = Sources::fetch(effect, time)?;
     let clips = (effect.clip(OUTPUT)?, effect.clip(SOURCE)?);
     let source = fetched.source.as_ref().map(|image| (&clips.1, image));
-    let scale = measured::of_render((&clips.0, &output), source, asked, time, scale);
+    let frame = rectangles::format(effect);
+    let scale = measured::of_render((&clips.0, &output), source, frame, asked, time, scale);
     fetched.watch = Watch::of(action, source.map(|(_, image)| image), time, scale);
     let drawn = drawn(effect, time, scale)?;
+    if output.format.layout == Layout::Rgb
+        && let Some(missing) = drawn.as_ref().and_then(|drawn| drawn.settings.missing_without_alpha())
+    {
+        let text = format!("the host wants pictures without alpha from this node: {missing}");
+        instance(effect)?.note(effect, &text, false);
+    }
     let rows = band(drawn.as_ref(), asked, threads::count(effect));
     let bands: Vec<Mutex<Rows>> = output.bands(asked, rows).into_iter().map(Mutex::new).collect();
     let aborted = AtomicBool::new(false);
@@ -127,7 +136,8 @@ fn draw(
 ) -> Option<()> {
     let (bounds, area) = (rows.window, window(&rows.window));
     let mut go_on = || !aborted.load(Ordering::Relaxed) && !effect.aborted();
-    let mixing = drawn.map(|drawn| Mixing::of(&drawn.settings));
+    let over = sources.source.as_ref().map(|image| image.format).unwrap_or_default();
+    let mixing = drawn.map(|drawn| Mixing::of(&drawn.settings).over(&over));
     let raw = mixing.as_ref().is_some_and(Mixing::is_raw);
     let source = |y: i32, pixels: &mut [Pixel]| {
         pixels.fill(CLEAR);

@@ -3,6 +3,9 @@
 use super::page;
 use super::state::{PartLook, PartSettings, State, blend, falloff};
 use crate::ofx::{Failure, Parameters};
+use openfx::sys::image_effect_v1::image_effect::{
+    kOfxImageComponentAlpha, kOfxImageComponentRGB, kOfxImageComponentRGBA,
+};
 use rototoon::render::coverage::MOST_INSTANTS;
 use rototoon::scene::{Falloff, FrameNumber};
 use std::collections::BTreeMap;
@@ -208,6 +211,37 @@ impl Settings {
     /// The settings of a part.
     pub fn look(&self, name: &str) -> PartLook {
         self.looks.get(name).copied().unwrap_or_default()
+    }
+
+    /// Whether the picture says something with its alpha that the source's does not.
+    pub fn has_alpha(&self) -> bool {
+        match self.output {
+            Output::Matte => matches!(self.channels, Channels::All | Channels::One(3)),
+            output => !matches!(output, Output::Overlay | Output::Painted),
+        }
+    }
+
+    /// What a picture without alpha lacks; `None` if nothing is missing in it.
+    pub fn missing_without_alpha(&self) -> Option<&'static str> {
+        match self.output {
+            Output::Cutout => Some("a cutout is black where it is transparent"),
+            Output::Matte if self.channels == Channels::One(3) => Some("the matte in alpha is missing"),
+            Output::Mattes if !self.channel_parts[3].trim().is_empty() => Some("the matte of Alpha parts is missing"),
+            _ => None,
+        }
+    }
+
+    /// Whether the picture has colours of its own, beside those of the source.
+    fn has_colours(&self) -> bool {
+        !matches!(self.output, Output::Cutout | Output::Matte)
+    }
+
+    /// The components that the output needs, over a source with these; `None` if those do.
+    pub fn components(&self, source: &[u8]) -> Option<&'static CStr> {
+        let has_none = source == kOfxImageComponentRGB.to_bytes();
+        let has_nothing_else = source == kOfxImageComponentAlpha.to_bytes();
+        let needed = self.has_alpha() && (has_none || has_nothing_else && self.has_colours());
+        needed.then_some(kOfxImageComponentRGBA)
     }
 
     /// Whether the source is in the picture.

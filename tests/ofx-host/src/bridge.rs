@@ -188,6 +188,8 @@ pub mod ffi {
         fn valid(self: &Effect) -> bool;
         fn set_clip(self: Pin<&mut Effect>, name: &str, settings: &ClipSettings);
         fn set_frame(self: Pin<&mut Effect>, clip: &str, time: f64, width: i32, height: i32, rgba: &[f32]);
+        fn set_region(self: Pin<&mut Effect>, clip: &str, time: f64, region: &Bounds);
+        fn set_format(self: Pin<&mut Effect>, clip: &str, format: &Bounds);
         fn create(self: Pin<&mut Effect>) -> String;
         fn destroy(self: Pin<&mut Effect>) -> String;
         fn render(

@@ -22,6 +22,8 @@ public:
   bool valid() const;
   void set_clip(rust::Str name, const ClipSettings &settings);
   void set_frame(rust::Str clip, double time, int width, int height, rust::Slice<const float> rgba);
+  void set_region(rust::Str clip, double time, const Bounds &region);
+  void set_format(rust::Str clip, const Bounds &format);
   rust::String create();
   rust::String destroy();
   rust::String render(double time, const Bounds &window, double scale, int threads, int tile_rows);

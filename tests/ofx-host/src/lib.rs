@@ -155,6 +155,16 @@ impl Effect<'_> {
         self.pin().set_frame(clip, time, width as i32, height as i32, rgba);
     }
 
+    /// Gives an input clip a region of definition of its own at a time, in pixels.
+    pub fn set_region(&mut self, clip: &str, time: f64, region: Bounds) {
+        self.pin().set_region(clip, time, &region);
+    }
+
+    /// Gives a clip a format, in pixels, as Natron does.
+    pub fn set_format(&mut self, clip: &str, format: Bounds) {
+        self.pin().set_format(clip, &format);
+    }
+
     /// Runs the action CreateInstance and reads the clip preferences. Returns the status.
     pub fn create(&mut self) -> String {
         self.pin().create()

@@ -52,6 +52,32 @@ fn regions_are_as_small_as_possible() {
 }
 
 #[test]
+fn a_matte_with_the_source_has_the_region_of_both() {
+    let host = host();
+    // The project's format is wider than the source, and the shape reaches beyond it.
+    let mut effect = effect(&host, FILTER, &ClipSettings::default());
+    effect.set_clip("Output", &ClipSettings { x2: 128, ..ClipSettings::default() });
+    let contour = |_| vec![p(40.0, 12.0), p(90.0, 12.0), p(90.0, 30.0), p(40.0, 30.0)];
+    let wide = Document::new(Scene { footage: footage(), parts: vec![part("box", 0.0, true, contour)] });
+    effect.set_text("document", &wide.to_json());
+    effect.set("output", &[MATTE]);
+    assert_eq!(region(&effect.region_of_definition(1.0, 1.0)), [40.0, 18.0, 90.0, 36.0]);
+    // With a channel, and with each use of the source's alpha.
+    for (channel, alpha) in [(1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (0.0, 2.0)] {
+        effect.set("matteChannel", &[channel]);
+        effect.set("sourceAlpha", &[alpha]);
+        assert_eq!(region(&effect.region_of_definition(1.0, 1.0)), [0.0, 0.0, 90.0, 48.0], "{channel} {alpha}");
+        // Nothing is drawn after the end of the track, and the source is there.
+        assert_eq!(region(&effect.region_of_definition(9.0, 1.0)), [0.0, 0.0, 64.0, 48.0], "{channel} {alpha}");
+    }
+    let window = Bounds { x1: 0, y1: 0, x2: 90, y2: 48 };
+    effect.preferences();
+    let picture = rendered(&host, &mut effect, 1.0, window);
+    assert_eq!(picture.values[4 * (20 * 90 + 85) + 3], 1.0, "beyond the source");
+    clean(&host);
+}
+
+#[test]
 fn frames_differ_although_no_parameter_is_animated() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());

@@ -1,8 +1,8 @@
 //! Painted regions and strokes in the host are those of the command line, at any scale, in any tile and format.
 
 use crate::common::{
-    CEL, CELS, FILTER, HEIGHT, LINES, OK, PAINT, PAINTED, ROTO, WHOLE, WIDTH, bundles, clean, drawn_document, host,
-    pattern, rendered,
+    CEL, CELS, FILTER, HEIGHT, LINES, OK, OVERLAY, PAINT, PAINTED, ROTO, WHOLE, WIDTH, bundles, clean, drawn_document,
+    host, pattern, rendered,
 };
 use image::{Rgba, RgbaImage};
 use rototoon::image::colour;
@@ -264,7 +264,12 @@ fn every_depth_and_component_has_the_same_picture() {
                 let components = format!("OfxImageComponent{components}");
                 let clip = ClipSettings { depth: depth.into(), components, ..ClipSettings::default() };
                 let mut effect = node(&host, &drawn_document(), output, &clip, false);
+                // The output has the components of the source, as in a host that gives no others.
+                effect.set("output", &[OVERLAY]);
+                effect.preferences();
+                effect.set("output", &[output]);
                 let found = rendered(&host, &mut effect, 1.0, WHOLE);
+                assert_eq!(found.channels, kept.len());
                 let wanted = reference.values.chunks(4).flat_map(|pixel| pixel[kept.clone()].to_vec());
                 let worst = found.values.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                 // A source in bytes is rounded already, and dark colours rise steeply from light.

@@ -186,6 +186,28 @@ fn pixels_at_another_scale_than_the_host_says_are_met() {
 }
 
 #[test]
+fn a_frame_around_shapes_that_nearly_fill_it_does_not_make_them_larger() {
+    let host = host();
+    // The region of the output is that of the shapes, and the host renders the whole frame.
+    for (right, bottom) in [(61.0, 47.0), (32.0, 48.0 - 24.0)] {
+        let top = if right > 40.0 { 2.5 } else { 24.0 };
+        let (left, lowest) = if right > 40.0 { (1.0, bottom) } else { (0.0, 48.0) };
+        let contour = move |_| vec![p(left, top), p(right, top), p(right, lowest), p(left, lowest)];
+        let mut effect = effect(&host, FILTER, &ClipSettings::default());
+        let document = Document::new(Scene { footage: footage(), parts: vec![part("back", 0.0, true, contour)] });
+        effect.set_text("document", &document.to_json());
+        effect.set("output", &[MATTE]);
+        let (x1, y1) = (left as i32, (48.0 - lowest) as i32);
+        let own = Bounds { x1, y1, x2: right as i32, y2: (48.0 - top).ceil() as i32 };
+        effect.set_region("Output", 1.0, own);
+        let picture = rendered(&host, &mut effect, 1.0, WHOLE);
+        let row = (0..WIDTH).map(|x| at(&picture, x, 40, 0)).sum::<f32>();
+        assert!((row - (right - left) as f32).abs() < 1e-3, "{right}: {row}");
+    }
+    clean(&host);
+}
+
+#[test]
 fn shapes_show_in_pictures_whose_scale_is_wrong() {
     let host = host();
     let mut effect = effect(&host, FILTER, &ClipSettings::default());

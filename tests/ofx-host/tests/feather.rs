@@ -5,7 +5,7 @@ use crate::common::{
 };
 use rototoon::project::Document;
 use rototoon::scene::Scene;
-use rototoon_ofx_host::{ClipSettings, Effect, Host};
+use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host};
 use std::path::Path;
 use tiny_skia::{Color, Pixmap};
 
@@ -97,6 +97,34 @@ fn a_feather_is_dragged_out_of_points_and_seen_in_the_matte() {
         effect.undo();
     }
     assert!((effect.text("document"), effect.text("state")) == (before.0, before.1));
+    clean(&host);
+}
+
+#[test]
+fn a_feather_of_points_is_stretched_with_the_footage_and_drawn_where_the_matte_ends() {
+    let host = host();
+    for (size, aspect) in [(1, 1.0), (2, 1.0), (4, 1.0), (2, 2.0)] {
+        let (width, height) = (size * WIDTH as i32, size * HEIGHT as i32);
+        let source = ClipSettings { x2: width, y2: height, aspect, ..ClipSettings::default() };
+        let corners = vec![p(20.0, 12.0), p(44.0, 12.0), p(44.0, 36.0), p(20.0, 36.0)];
+        let mut square = part("square", 0.0, true, |_| corners.clone());
+        square.feather = vec![4.0; 4];
+        let mut effect = effect(&host, FILTER, &source);
+        effect.set_text("document", &Document::new(Scene { footage: footage(), parts: vec![square] }).to_json());
+        effect.set("output", &[MATTE]);
+        // A feather of all parts is in the host's pixels.
+        for all in [0.0, 3.0] {
+            effect.set("feather", &[all]);
+            let window = Bounds { x1: 0, y1: 0, x2: width, y2: height };
+            let picture = rendered(&host, &mut effect, 1.0, window);
+            let row = height / 2 * width;
+            let soft = (0..width).rev().find(|x| picture.values[4 * (row + x) as usize + 3] > 1e-4).unwrap();
+            let wanted = f64::from(size) * 48.0 + all;
+            assert!((f64::from(soft + 1) - wanted).abs() <= 1.5, "{size} {aspect} {all}: {soft} {wanted}");
+            let edge = outer_edge(&mut effect).unwrap() / aspect;
+            assert!((edge - wanted).abs() < 0.3 * f64::from(size), "{size} {aspect} {all}: {edge} {wanted}");
+        }
+    }
     clean(&host);
 }
 

@@ -8,6 +8,7 @@
 //! - `buttons`: load, save, track
 //! - `live`: edits that are tracked at once, on frames in memory
 //! - `overlay`: the pen in the viewer: drawing, selecting, correcting, undo
+//! - `crops`: sources that are cropped to their drawing, or have frames without end
 //! - `faults`: faults that were seen in real hosts
 //! - `node`: settings of parts, channels, masks, regions, motion and export
 //! - `feather`: the feather of control points
@@ -19,6 +20,7 @@
 //! - `unpainted`: paint and strokes where there are none, cannot be read, or only some are wanted
 //! - `looks`: the falloff of soft borders, and the colours of parts
 //! - `lives`: instances on several threads, at other places and of other versions
+//! - `paper`: sources with transparent paper
 //! - `page`: the documentation lists the matrix's tests
 //! - `standing`: lost, doubtful and hidden parts in the viewer and in the timeline
 //! - `saving`: *Save* beside other programs
@@ -30,6 +32,7 @@ mod actions;
 mod buttons;
 mod cels;
 mod common;
+mod crops;
 mod describing;
 mod faults;
 mod feather;
@@ -44,6 +47,7 @@ mod node;
 mod order;
 mod overlay;
 mod page;
+mod paper;
 mod pixels;
 mod saving;
 mod session;

@@ -186,6 +186,37 @@ fn a_matte_goes_into_any_channel_over_the_source() {
 }
 
 #[test]
+fn colours_under_a_premultiplied_matte_have_the_sources_alpha_once() {
+    let host = host();
+    let multiplied = pattern(1);
+    let straight: Vec<f32> = multiplied
+        .chunks(4)
+        .flat_map(|pixel| [pixel[0] / pixel[3], pixel[1] / pixel[3], pixel[2] / pixel[3], pixel[3]])
+        .collect();
+    let drawn = |premultiplication: &str, frame: &[f32], alpha: f64| {
+        let source = ClipSettings { premultiplication: premultiplication.into(), ..ClipSettings::default() };
+        let mut effect = effect(&host, FILTER, &source);
+        effect.set_frame("Source", 1.0, WIDTH, frame);
+        let values = [("output", MATTE), ("matteChannel", 1.0), ("premultiply", 1.0), ("sourceAlpha", alpha)];
+        values.iter().for_each(|(id, value)| effect.set(id, &[*value]));
+        effect.preferences();
+        rendered(&host, &mut effect, 1.0, WHOLE).values
+    };
+    for alpha in [1.0, 2.0] {
+        let found = drawn("OfxImageAlphaPremultiplied", &multiplied, alpha);
+        let wanted = drawn("OfxImageAlphaUnPremultiplied", &straight, alpha);
+        assert!(found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{alpha}");
+        // Inside of the matte with Multiply, and outside of it with Add, there is the source as it was.
+        let as_was = found
+            .chunks(4)
+            .zip(multiplied.chunks(4))
+            .filter(|(a, b)| a.iter().zip(*b).all(|(a, b)| (a - b).abs() < 1e-5));
+        assert!(as_was.count() > 200, "{alpha}");
+    }
+    clean(&host);
+}
+
+#[test]
 fn each_channel_has_a_matte_of_its_own() {
     let host = host();
     let mut effect = node(&host, FILTER);

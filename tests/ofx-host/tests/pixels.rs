@@ -1,8 +1,8 @@
 //! The picture does not depend on depth, components, tiles, row order or threads.
 
 use crate::common::{
-    CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, OK, OVERLAY, WHOLE, WIDTH, clean, effect, host, pattern, rendered,
-    scene,
+    CUTOUT, FILTER, GENERAL, HEIGHT, IDS, MATTE, MATTES, OK, OVERLAY, PAINTED, WHOLE, WIDTH, clean, effect, host,
+    pattern, rendered, scene,
 };
 use rototoon::project::Document;
 use rototoon_ofx_host::{Bounds, ClipSettings, Host, Picture, Settings};
@@ -39,6 +39,9 @@ fn set(effect: &mut rototoon_ofx_host::Effect, output: f64) {
 /// Checks that pictures of a format agree with the reference, however many threads and tiles draw them.
 fn agrees(host: &Host, settings: &ClipSettings, (output, scale): (f64, f64), reference: &Picture) {
     let mut effect = effect(host, FILTER, settings);
+    // The output has the components of the source, as in a host that gives no others.
+    effect.set("output", &[OVERLAY]);
+    effect.preferences();
     set(&mut effect, output);
     let mut first: Option<Picture> = None;
     for (threads, tile_rows, cpus) in [(1, 0, 1), (1, 7, 1), (4, 5, 1), (1, 0, 4)] {
@@ -76,6 +79,41 @@ fn every_image_format_gives_the_same_picture() {
             clean(&host);
         }
     }
+}
+
+#[test]
+fn a_source_without_alpha_has_an_output_with_alpha_where_there_is_one() {
+    let host = host();
+    let rgb = ClipSettings { components: "OfxImageComponentRGB".into(), ..ClipSettings::default() };
+    let mut effect = effect(&host, FILTER, &rgb);
+    effect.set_text("alphaParts", "star");
+    let mut shown = |output: f64, channel: f64| {
+        effect.set("output", &[output]);
+        effect.set("matteChannel", &[channel]);
+        let preferences = effect.preferences();
+        let picture = rendered(&host, &mut effect, 2.0, WHOLE);
+        let alphas: Vec<f32> =
+            picture.values.chunks(picture.channels).filter_map(|pixel| pixel.get(3).copied()).collect();
+        (preferences, picture.channels, alphas.contains(&0.0) && alphas.contains(&1.0))
+    };
+    for (output, channel) in [(CUTOUT, 0.0), (MATTE, 0.0), (MATTE, 1.0), (IDS, 0.0), (MATTES, 0.0)] {
+        let (preferences, channels, has_alpha) = shown(output, channel);
+        assert!(channels == 4 && has_alpha, "{output} {channel}: {preferences}");
+        let ending =
+            if channel == 0.0 { "RGBA OfxImageAlphaPremultiplied" } else { "RGBA OfxImageAlphaUnPremultiplied" };
+        assert!(preferences.ends_with(ending), "{output} {channel}: {preferences}");
+    }
+    for (output, channel) in [(OVERLAY, 0.0), (PAINTED, 0.0), (MATTE, 2.0)] {
+        assert_eq!(shown(output, channel).1, 3, "{output} {channel}");
+    }
+    let _ = host.messages();
+    // A host that gives no alpha is told what is missing, once.
+    effect.set("output", &[CUTOUT]);
+    for _ in 0..2 {
+        rendered(&host, &mut effect, 2.0, WHOLE);
+    }
+    let told = host.messages();
+    assert!(told.len() == 1 && told[0].contains("without alpha"), "{told:?}");
 }
 
 /// By how much a picture is taller that threads divide among them. The usual one is drawn in one piece.

@@ -39,13 +39,21 @@ const std::string &TestClip::getPremult() const {
   return isOutput() ? effect_->getOutputPreMultiplication() : premult_;
 }
 
+void TestClip::set_format(const Bounds &format) {
+  static const ofx::Property::PropSpec natron[] = {{"OfxImageClipPropFormat", ofx::Property::eInt, 4, false, "0"},
+                                                   ofx::Property::propSpecEnd};
+  if (!getProps().fetchProperty(natron[0].name)) getProps().addProperties(natron);
+  const int sides[] = {format.x1, format.y1, format.x2, format.y2};
+  for (int i = 0; i < 4; ++i) getProps().setIntProperty(natron[0].name, sides[i], i);
+}
+
 fx::Image *TestClip::getImage(OfxTime time, const OfxRectD *region) {
   if (controls().no_images || !settings.connected) return nullptr;
   if (!controls().temporal && time != effect_->now) return nullptr;
   // A host may give pixels at another scale than it says.
   double scale = effect_->scale * controls().real_scale;
-  if (isOutput()) return target ? new FetchedImage(*this, scale, target, pixels(scale)) : nullptr;
-  OfxRectI whole = pixels(scale), bounds = whole;
+  if (isOutput()) return target ? new FetchedImage(*this, scale, target, pixels(scale, time)) : nullptr;
+  OfxRectI whole = pixels(scale, time), bounds = whole;
   const OfxRectD *asked = region ? region : has_interest ? &interest : nullptr;
   if (asked) {
     double x = scale / settings.aspect;
@@ -64,12 +72,13 @@ std::shared_ptr<Buffer> TestClip::draw(OfxTime time, const OfxRectI &bounds, dou
   auto buffer = std::make_shared<Buffer>(bounds, depth_of(getPixelDepth()), channels_of(getComponents()),
                                          settings.padding, settings.top_down);
   auto found = frames.find(time);
+  OfxRectI own = region(time);
   int step = std::max(1, int(std::lround(1 / scale)));
   for (int y = bounds.y1; y < bounds.y2; ++y) {
     for (int x = bounds.x1; x < bounds.x2; ++x) {
       float pixel[4] = {0, 0, 0, 0};
       for (int j = 0; j < step * step && found != frames.end(); ++j) {
-        int u = x * step + j % step - settings.x1, v = y * step + j / step - settings.y1;
+        int u = x * step + j % step - own.x1, v = y * step + j / step - own.y1;
         const Frame &frame = found->second;
         if (u < 0 || v < 0 || u >= frame.width || v >= frame.height) continue;
         for (int c = 0; c < 4; ++c) pixel[c] += frame.rgba[4 * (size_t(v) * frame.width + u) + c] / (step * step);

@@ -27,6 +27,14 @@ void Effect::set_frame(rust::Str name, double time, int width, int height, rust:
     clip->frames[time] = Frame{width, height, std::vector<float>(rgba.begin(), rgba.end())};
 }
 
+void Effect::set_region(rust::Str name, double time, const Bounds &region) {
+  if (TestClip *clip = impl->effect->clip(text_of(name))) clip->regions[time] = rect(region);
+}
+
+void Effect::set_format(rust::Str name, const Bounds &format) {
+  if (TestClip *clip = impl->effect->clip(text_of(name))) clip->set_format(format);
+}
+
 rust::String Effect::create() {
   rototoon_host::history() = History();
   OfxStatus status = impl->effect->createInstanceAction();

@@ -32,6 +32,8 @@ public:
 
   ClipSettings settings;
   std::map<double, Frame> frames;
+  // Regions of definition on single frames, in pixels.
+  std::map<double, OfxRectI> regions;
   std::shared_ptr<Buffer> target;
   bool has_interest = false;
   OfxRectD interest;
@@ -47,9 +49,12 @@ public:
   double getUnmappedFrameRate() const override { return 24; }
   void getUnmappedFrameRange(double &first, double &last) const override { getFrameRange(first, last); }
   bool getContinuousSamples() const override { return false; }
-  OfxRectD getRegionOfDefinition(OfxTime) const override {
-    return {settings.x1 * settings.aspect, double(settings.y1), settings.x2 * settings.aspect, double(settings.y2)};
+  OfxRectD getRegionOfDefinition(OfxTime time) const override {
+    OfxRectI r = region(time);
+    return {r.x1 * settings.aspect, double(r.y1), r.x2 * settings.aspect, double(r.y2)};
   }
+  // Sets Natron's property of the format.
+  void set_format(const Bounds &format);
   fx::Image *getImage(OfxTime time, const OfxRectD *bounds) override;
   const std::string &findSupportedComp(const std::string &s) const override {
     // The library has no mapping for RGB.
@@ -61,9 +66,14 @@ public:
     components_ = s.connected ? std::string(s.components) : kOfxImageComponentNone;
     premult_ = std::string(s.premultiplication);
   }
-  OfxRectI pixels(double scale) const {
-    return {int(std::floor(settings.x1 * scale)), int(std::floor(settings.y1 * scale)),
-            int(std::ceil(settings.x2 * scale)), int(std::ceil(settings.y2 * scale))};
+  OfxRectI region(OfxTime time) const {
+    auto own = regions.find(time);
+    return own == regions.end() ? OfxRectI{settings.x1, settings.y1, settings.x2, settings.y2} : own->second;
+  }
+  OfxRectI pixels(double scale, OfxTime time) const {
+    OfxRectI r = region(time);
+    return {int(std::floor(r.x1 * scale)), int(std::floor(r.y1 * scale)), int(std::ceil(r.x2 * scale)),
+            int(std::ceil(r.y2 * scale))};
   }
 
 private:
