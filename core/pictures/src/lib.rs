@@ -10,6 +10,7 @@
 #![forbid(unsafe_code)]
 
 mod backdrop;
+mod blocks;
 pub mod decode;
 mod error;
 mod holds;
@@ -22,7 +23,6 @@ pub mod sequence;
 pub mod store;
 mod stored;
 mod tags;
-mod tiles;
 
 pub use decode::{decode, probe};
 pub use error::DecodeError;
