@@ -91,6 +91,10 @@ pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeEr
         if tags::wide_whole_numbers(&mut file) {
             return Err(DecodeError::tiff("whole numbers of 32 bits", "8 or 16 bits, or floats"));
         }
+        file.rewind()?;
+        if tags::reversed_bits(&mut file) {
+            return Err(DecodeError::tiff("reversed bits (FillOrder 2)", "the usual order"));
+        }
     }
     let layered = is_exr && !blocks::headers(&mut file)?.iter().any(layered::is_plain);
     file.rewind()?;
