@@ -30,6 +30,7 @@
 //! - `picture`: files of another picture size
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
+//! - `way`: shapes that do not go straight from key to key
 
 pub mod bvh;
 mod channel;
@@ -63,6 +64,7 @@ mod svg_sheet;
 mod svg_style;
 mod svg_transform;
 mod svg_view;
+mod way;
 
 pub use encoding::foreign_encoding;
 pub use extent::Extent;

@@ -8,7 +8,8 @@
 //! `Value`; without keys the number itself counts. Coordinates are pixels with y up.
 //!
 //! - A shape has keys on the frames on which any of its numbers or of its `transform`'s has one. Between keys numbers are taken
-//!   as linear, as Natron does for control points.
+//!   as linear, as Natron does for control points. Where the points then do not go straight, since a transformation turns them, there is a
+//!   key on every frame (`way`).
 //! - Keys beyond the footage are left out (`range`).
 //! - A curve is open if it is not closed yet or was drawn as an open one.
 //! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
@@ -28,6 +29,7 @@ use super::path::{NoContours, Path, contours};
 use super::picture::{self, Picture};
 use super::problem::{Fault, LeftOut, parsed};
 use super::range::{Kept, Reach};
+use super::way::add_bent;
 use super::{ImportError, Shape, Shapes};
 use number::{child, curve, named, text_of};
 use rototoon_base::geometry::Point;
@@ -125,11 +127,14 @@ impl Reader<'_> {
     fn shape(&mut self, item: Node) -> Result<Shape, Fault> {
         let knots = knots(item)?;
         let transform = Transform::read(item)?;
-        let frames = self.frames(item, &knots, transform.as_ref());
+        let closed = flag(item, "Closed") && !flag(item, "OpenBezier");
+        let mut frames = self.frames(item, &knots, transform.as_ref());
+        if transform.as_ref().is_some_and(Transform::bends) {
+            add_bent(&mut frames, |frame| Some(self.path(&knots, transform.as_ref(), closed, frame.into())));
+        }
         if knots.len().saturating_mul(frames.len()) > MOST_POINTS {
             self.points.take(usize::MAX, item)?;
         }
-        let closed = flag(item, "Closed") && !flag(item, "OpenBezier");
         let paths: Vec<Path> =
             frames.iter().map(|&frame| self.path(&knots, transform.as_ref(), closed, frame.into())).collect();
         let made = contours(&paths, |count| self.points.take(count, item)).map_err(|problem| match problem {

@@ -64,6 +64,13 @@ impl Transform {
         self.pairs.iter().flatten().chain([&self.rotation]).chain(&self.matrix).flat_map(Channel::turns)
     }
 
+    /// Whether points may go on curves between its keys.
+    pub(super) fn bends(&self) -> bool {
+        let [_, _, scale, skew] = &self.pairs;
+        let shape = scale.iter().chain(skew).chain([&self.rotation]).chain(&self.matrix);
+        shape.into_iter().any(|channel| channel.turns().next().is_some())
+    }
+
     /// The map of points on a frame.
     pub(super) fn at(&self, frame: f64) -> DAffine2 {
         let [center, translation, mut scale, skew] =
