@@ -299,3 +299,22 @@ fn a_shape_that_turns_between_keys_has_a_key_on_every_frame() {
         "but not about a pivot that moves"
     );
 }
+
+#[test]
+fn shapes_beside_labels_and_python_are_all_read() {
+    let points = "{p {0 0} {10 0} {0 0} {0 0} {50 0} {0 0} {0 0} {50 90} {0 0}}";
+    let shape = |name: &str| script("bezier", points, "").replace("Bezier1", name);
+    for text in [
+        r#" label "5\" board""#,
+        r#" knobChanged "d = \{\"a\": 1\}\nif d:\n  print(\"\}\")""#,
+        r" label \{hello",
+        r#" label {5" board}"#,
+        " # a comment with { brace and \" quote",
+    ] {
+        let note = if text.contains('#') { format!("{}\n", text.trim()) } else { format!("NoOp {{\n{text}\n}}\n") };
+        let whole = format!("#! /usr/Nuke -nx\n{note}{}{note}{}{note}", shape("first"), shape("second"));
+        let found = nuke(&whole, &footage(), 1).unwrap();
+        let names: Vec<_> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
+        assert_eq!(names, ["second", "first"], "{text}");
+    }
+}
