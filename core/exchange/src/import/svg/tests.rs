@@ -308,3 +308,14 @@ fn an_edit_of_a_film_of_rototoon_is_the_form_on_its_first_frame() {
     let foreign = text.replace("data-first", "first").replacen("d=\"M1 0L", "d=\"M1 -2L", 1);
     assert_eq!(svg(&foreign, &footage(), 5).unwrap().shapes[0].keys[&6], at(1.0));
 }
+
+#[test]
+fn numbers_of_points_need_no_blanks_between_them() {
+    let found = |points: &str| read(&format!("<polygon points='{points}'/>")).unwrap().shapes.remove(0).keys;
+    let wanted = found("10 -20 30 -40 50 -60");
+    for points in ["10-20 30-40 50-60", "10-20,30-40,50-60", "1e1-2e1,30-40 5e+1-60"] {
+        assert_eq!(found(points), wanted, "{points}");
+    }
+    assert_eq!(found("10.5.5 30 40 50 60"), found("10.5 0.5 30 40 50 60"));
+    assert!(read("<polygon points='10-20-30'/>").is_err() && read("<polygon points='1 2 3 4 x'/>").is_err());
+}
