@@ -171,6 +171,11 @@ fn what_cannot_be_read_is_left_out_and_the_others_come_in() {
             "<path id='m' d='M0 0h1'><animate attributeName='d' dur='0.2s' values='M0 0h1;M0 0h1v1'/></path>",
             "<path> \"m\" is left out: found paths of several kinds",
         ),
+        // The value at the very end is one frame after the footage, and no key.
+        (
+            "<path id='e' d='M0 0h1v1z'><animate attributeName='d' dur='0.375s' values='M0 0h1v1z;M3 3h2v1l-5 3z'/></path>",
+            "<path> \"e\" is left out: found paths of several kinds, expected the commands of frame",
+        ),
     ] {
         let found = read(&(bad.to_owned() + good)).unwrap();
         assert_eq!((found.shapes.len(), found.shapes[0].name.as_str()), (1, "good"), "{bad}");
