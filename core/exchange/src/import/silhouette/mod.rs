@@ -98,7 +98,7 @@ struct Layer {
 
 impl Layer {
     fn read(node: Node, first: f64) -> Self {
-        let hidden = node.attribute("hidden").is_some_and(|text| text.eq_ignore_ascii_case("true"));
+        let hidden = node.attribute("hidden").is_some_and(is_true);
         let transform = property(node, "transform.matrix").map_or(Ok(None), |node| Transform::read(node, first));
         Self { hidden, lost: lost(node), transform }
     }
@@ -241,6 +241,11 @@ impl Reader<'_> {
     }
 }
 
+/// Whether a text says yes. Files that are written by hand have numbers.
+fn is_true(text: &str) -> bool {
+    text.trim().eq_ignore_ascii_case("true") || text.trim() == "1"
+}
+
 /// A property of a shape or a layer itself.
 fn property<'a, 'b>(owner: Node<'a, 'b>, id: &str) -> Option<Node<'a, 'b>> {
     let direct =
@@ -252,7 +257,7 @@ fn property<'a, 'b>(owner: Node<'a, 'b>, id: &str) -> Option<Node<'a, 'b>> {
 /// What a shape or a layer does beside adding its area to those below; `None` for nothing.
 fn lost(owner: Node) -> Option<String> {
     let value = |id| property(owner, id)?.children().find(Node::is_element)?.text().map(str::trim);
-    let inverted = value("invert").is_some_and(|text| text.eq_ignore_ascii_case("true") || text == "1");
+    let inverted = value("invert").is_some_and(is_true);
     // The greatest of several coverages and their sum have the same outline.
     let plain = |mode: &&str| ["add", "max", "normal"].iter().any(|plain| mode.eq_ignore_ascii_case(plain));
     let mode = value("mode").filter(|mode| !mode.is_empty() && !plain(mode));
