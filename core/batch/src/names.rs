@@ -10,6 +10,10 @@ pub const SUMMARY: &str = "summary.json";
 pub const REPORT: &str = "report.jsonl";
 /// Names that belong to the batch.
 pub const RESERVED: [&str; 3] = [PAGE, SUMMARY, REPORT];
+/// Names that stand for devices on Windows, with any ending.
+const DEVICES: [&str; 6] = ["CON", "PRN", "AUX", "NUL", "CONIN$", "CONOUT$"];
+/// The same with a digit.
+const NUMBERED: [&str; 2] = ["COM", "LPT"];
 /// Greatest number of bytes of a name.
 const LONGEST: usize = 120;
 
@@ -29,7 +33,25 @@ pub fn safe_name(name: &str) -> Result<(), String> {
     if name.starts_with('.') || name.ends_with(['.', ' ']) {
         return Err("a name that does not begin with a dot, nor end with a dot or a blank".into());
     }
+    let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_uppercase();
+    let numbered = |device: &str| {
+        stem.strip_prefix(device).is_some_and(|rest| rest.len() == 1 && rest.as_bytes()[0].is_ascii_digit())
+    };
+    if DEVICES.contains(&&*stem) || NUMBERED.into_iter().any(numbered) {
+        return Err("a name that is no device of Windows, such as CON, NUL or COM1".into());
+    }
+    if name.contains(is_loose) {
+        return Err(
+            "a name without loose accents: its letters in one piece, as \"é\" and not as \"e\" with an accent after it"
+                .into(),
+        );
+    }
     Ok(())
+}
+
+/// Whether a sign is put onto the letter before it. A Mac takes such a letter and the same one in one piece for one name, so two shots would have one folder.
+fn is_loose(sign: char) -> bool {
+    matches!(sign, '\u{300}'..='\u{36f}' | '\u{3099}' | '\u{309a}')
 }
 
 #[cfg(test)]
@@ -38,10 +60,25 @@ mod tests {
 
     #[test]
     fn names_are_those_of_folders_everywhere() {
-        for name in ["sh010", "Szene 3", "鳥"] {
+        for name in ["sh010", "Szene 3", "鳥", "caf\u{e9}", "console", "COM10", "com", "a.con", "ガ"] {
             assert_eq!(safe_name(name), Ok(()), "{name}");
         }
-        for name in ["", "..", ".a", "a.", "a b ", "a:b", "a\nb", &"a".repeat(121)] {
+        for name in [
+            "",
+            "..",
+            ".a",
+            "a.",
+            "a b ",
+            "a:b",
+            "a\nb",
+            "CON",
+            "nul.txt",
+            "Aux .a.b",
+            "lpt1",
+            "com0.json",
+            "cafe\u{301}",
+            &"a".repeat(121),
+        ] {
             assert!(safe_name(name).is_err(), "{name}");
         }
     }

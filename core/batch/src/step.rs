@@ -2,7 +2,8 @@
 //!
 //! A step reads the newest document of its shot: the project, or what an earlier step wrote. The fields of a step in the
 //! manifest are the options of the subcommand, with `_` for `-`. `to` is the name of what it writes, without a folder; so is
-//! `report` of `track`. A step writes nothing else, so that no file is written that the record does not know.
+//! `report` of `track`. A step writes nothing else, so that no file is written that the record does not know. Which
+//! folder keeps what was found is said by the worker's machine and not by the manifest, which may come from somebody else.
 
 use crate::names::safe_name;
 use rototoon::project::described;
@@ -181,7 +182,7 @@ fn own_name(field: &str, name: &str) -> Result<String, String> {
 
 fn add_option(words: &mut Vec<String>, name: &str, value: &Value) -> Result<(), String> {
     let word = format!("--{}", name.replace('_', "-"));
-    if ["--output", "--threads", "--progress", "--help"].contains(&word.as_str()) {
+    if ["--output", "--threads", "--progress", "--help", "--cache"].contains(&word.as_str()) {
         return Err(format!("{name}: not an option of a step"));
     }
     let text = match value {
@@ -276,6 +277,7 @@ mod tests {
             (json!({"do": "track", "report": 7}), "report: found 7, expected the name"),
             (json!({"do": "track", "output": "x"}), "output: not an option"),
             (json!({"do": "track", "threads": 9}), "threads: not an option"),
+            (json!({"do": "track", "cache": "../../elsewhere"}), "cache: not an option"),
             (json!({"do": "track", "progress": "json"}), "progress: not an option"),
             (json!({"do": "track", "preset": {}}), "preset: found an object, expected a text"),
         ] {

@@ -6,6 +6,7 @@ use crate::manifest::{Manifest, Shot};
 use crate::names::SUMMARY;
 use crate::record::{Found, Record};
 use crate::report::rounded;
+use rototoon::file;
 use rototoon::project::{WriteError, write_whole};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -145,7 +146,8 @@ impl<'a> Summary<'a> {
 ///
 /// The file cannot be written, or is somebody else's.
 pub fn write_own(path: &Path, bytes: &[u8], mark: &str) -> Result<(), WriteError> {
-    let own = match std::fs::read(path) {
+    // A pipe or a device is no file of the batch, and might never end.
+    let own = match file::bytes(path) {
         Ok(found) => found.windows(mark.len()).any(|part| part == mark.as_bytes()),
         Err(error) => error.kind() == std::io::ErrorKind::NotFound,
     };
@@ -186,5 +188,19 @@ mod tests {
         let error = summary.write(folder.path()).unwrap_err().to_string();
         assert!(error.contains("summary.json") && error.contains("did not write"), "{error}");
         assert_eq!(std::fs::read_to_string(folder.path().join(SUMMARY)).unwrap(), "mine");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn pipes_and_devices_are_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(SUMMARY);
+        let summary = Summary { entries: vec![] };
+        let refused = || summary.write(folder.path()).unwrap_err().to_string().contains("did not write");
+        assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+        assert!(refused());
+        std::fs::remove_file(&path).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
+        assert!(refused());
     }
 }

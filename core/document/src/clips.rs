@@ -92,6 +92,7 @@ impl Clips {
     /// What is as it must be is read straight into numbers. Only where it is not, it is read once more, value by value, to say
     /// what is wrong and where.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ClipsError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         match plain::read(text) {
             Some((clips, fps)) => Ok(Self { clips, fps }),
             None => Self::parse_by_value(text, origin),
@@ -188,6 +189,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn json(&self, text: &str) -> Result<Value, ClipsError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         serde_json::from_str(text).map_err(|e| ClipsError::Syntax { origin: self.origin.into(), reason: e.to_string() })
     }
 

@@ -57,6 +57,7 @@ pub mod clips;
 pub mod conform;
 pub mod curves;
 mod direction;
+mod doubled;
 pub mod drawings;
 mod fields;
 pub mod fills;

@@ -8,7 +8,8 @@ use super::looks::{Curve, Shade};
 use super::problem::Problems;
 use super::schema::{Field, GAPS, Layout, VERSION};
 use super::shape::{Context, Entries, Flag, Frame, FrameRange, List, Number, Pair, Seed, Shape, Step, Text, Whole};
-use super::validate;
+use super::unknown::OTHERS;
+use super::{doubled, validate};
 use rototoon_base::file;
 use rototoon_base::scene::{Falloff, Footage, FrameNumber, Part, Scene};
 use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess};
@@ -171,6 +172,24 @@ fn unknown<'de, A: MapAccess<'de>>(entries: &mut A, name: String) -> Result<Fiel
     Ok(Field::Unknown { name, json })
 }
 
+/// A field of the document that other stages read, or that nobody does. In the former no object may have a field twice.
+fn other<'de, A: MapAccess<'de>>(context: &mut Context, entries: &mut A, name: String) -> Result<Field, A::Error> {
+    let read = unknown(entries, name)?;
+    let known = OTHERS.iter().find(|known| **known == read.name());
+    if let (Some(known), Field::Unknown { json, .. }) = (known, &read)
+        && let Some((way, name)) = doubled::first(json)
+    {
+        // Recording an error cannot fail, so the steps are always removed again.
+        let _ = context.within(Step::Field(known), |within| {
+            within.within(Step::Way(way), |inner| {
+                inner.error(format!("found the field {name:?} twice, expected it once"));
+                Ok::<_, std::convert::Infallible>(())
+            })
+        });
+    }
+    Ok(read)
+}
+
 /// Whether the field `name` appeared before. If so, its value is skipped and an error recorded.
 fn repeated<'de, A: MapAccess<'de>>(
     context: &mut Context,
@@ -236,7 +255,7 @@ impl<'de> Shape<'de> for DocumentShape {
                 }
                 "footage" => field(context, &mut entries, "footage", FootageShape, &mut footage)?,
                 "parts" => field(context, &mut entries, "parts", PartsShape, &mut parts)?,
-                _ => unknown(&mut entries, name)?,
+                _ => other(context, &mut entries, name)?,
             };
             layout.top.push(read);
         }

@@ -22,6 +22,8 @@ pub(super) enum Step {
     Index(usize),
     /// A part by index.
     Part(usize),
+    /// Steps in words, with the marks between them.
+    Way(String),
 }
 
 /// The present place of the reader, and the problems found so far.
@@ -83,6 +85,7 @@ impl Context {
                 Step::Field(name) => path += &format!(".{name}"),
                 Step::Entry(number) => path += &format!(".\"{number}\""),
                 Step::Index(index) => path += &format!("[{index}]"),
+                Step::Way(way) => path += way,
                 Step::Part(index) => path = part_place(*index, self.names.get(index).map(String::as_str)),
             }
         }

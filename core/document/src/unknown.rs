@@ -15,7 +15,7 @@ use serde_json::value::RawValue;
 use std::collections::BTreeMap;
 
 /// The document's fields that other stages read.
-const OTHERS: &[&str] = &[
+pub(super) const OTHERS: &[&str] = &[
     "drawings",
     "pairs",
     "pegs",

@@ -38,7 +38,7 @@ fn back(scene: &Scene) -> Vec<(&'static str, Part)> {
     let part = |(format, found): (_, import::Shapes)| {
         assert_eq!(found.warnings, [""; 0], "{format}");
         let mut scene = Scene { parts: Vec::new(), footage: footage.clone() };
-        import::into_scene(&mut scene, found.shapes);
+        import::into_scene(&mut scene, found.shapes).unwrap();
         (format, scene.parts.remove(0))
     };
     found.map(part).into()

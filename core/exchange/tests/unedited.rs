@@ -121,7 +121,7 @@ fn check(scene: &Scene, detail: Detail) -> Result<(), TestCaseError> {
             found.shapes.iter_mut().filter(|shape| shape.name == there).for_each(|shape| shape.name = own.to_owned());
         }
         let mut back = scene.clone();
-        let merged = import::into_scene(&mut back, found.shapes);
+        let merged = import::into_scene(&mut back, found.shapes).unwrap();
         for taken in &merged.taken {
             prop_assert!(taken.change == Change::Nothing, "{format}: {taken:?}, {:?}", found.warnings);
         }
@@ -159,7 +159,7 @@ fn check_range(scene: &Scene, [first, count]: [FrameNumber; 2], detail: Detail) 
             found.shapes.iter_mut().filter(|shape| shape.name == there).for_each(|shape| shape.name = own.to_owned());
         }
         let mut back = scene.clone();
-        let merged = import::into_scene(&mut back, found.shapes);
+        let merged = import::into_scene(&mut back, found.shapes).unwrap();
         for taken in &merged.taken {
             prop_assert!(taken.change == Change::Nothing, "{format}: {taken:?}, {:?}", found.warnings);
         }

@@ -16,10 +16,10 @@
 //! 2 GiB while it is decoded. Damage inside of a JPEG scan is not found: the format has no checksums.
 
 use super::backdrop;
+use super::blocks;
 use super::error::DecodeError;
 use super::open::{check_size, decoder, open};
 use super::stored::Stored;
-use super::tiles;
 use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat};
 use rototoon_base::scene::{Colour, Raster};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -85,7 +85,7 @@ pub fn described(path: &Path) -> Option<Described> {
         if reader.format() != Some(ImageFormat::OpenExr) {
             return Ok(reader.format().map(|_| Described::default()));
         }
-        let headers = tiles::headers(&mut reader.into_inner())?;
+        let headers = blocks::headers(&mut reader.into_inner())?;
         let Some(header) = headers.first() else { return Ok(None) };
         let own = &header.shared_attributes;
         let places = own.chromaticities.map(|own| [own.red, own.green, own.blue, own.white]);

@@ -12,10 +12,13 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// By frame the frame whose file it shows, as far as it is known.
+/// By frame the frame whose file it shows, as far as it is known; nothing if neither it nor an earlier frame has a file.
+type Known = BTreeMap<FrameNumber, Option<FrameNumber>>;
+
+/// What frames without a file show, as far as it is known.
 #[derive(Debug, Default)]
 pub(super) struct Holds {
-    known: Mutex<BTreeMap<FrameNumber, FrameNumber>>,
+    known: Mutex<Known>,
 }
 
 impl Holds {
@@ -26,18 +29,19 @@ impl Holds {
             let known = self.locked().get(&at).copied();
             known.or_else(|| {
                 asked.push(at);
-                there(at).then_some(at)
+                there(at).then_some(Some(at))
             })
         });
-        let Some(found) = found else { return frame };
+        // Also that there is no file is an answer. Else each frame of a footage without files would ask for all before it.
+        let found = found.flatten();
         self.locked().extend(asked.into_iter().map(|at| (at, found)));
-        found
+        found.unwrap_or(frame)
     }
 
-    /// Whether a frame that held the drawing before it has a file now.
+    /// Whether a frame that held the drawing before it, or had none before it, has a file now.
     pub fn has_changed(&self, there: impl Fn(FrameNumber) -> bool) -> bool {
         let known = self.locked().clone();
-        known.into_iter().any(|(frame, shown)| frame != shown && there(frame))
+        known.into_iter().any(|(frame, shown)| shown != Some(frame) && there(frame))
     }
 
     /// Forgets everything, because files may have changed.
@@ -46,7 +50,7 @@ impl Holds {
     }
 
     /// Nothing panics between two changes of the map.
-    fn locked(&self) -> std::sync::MutexGuard<'_, BTreeMap<FrameNumber, FrameNumber>> {
+    fn locked(&self) -> std::sync::MutexGuard<'_, Known> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -79,7 +83,22 @@ mod tests {
     fn a_frame_before_every_file_shows_itself() {
         let holds = Holds::default();
         assert_eq!(holds.shown(2, 1, |frame| frame > 2), 2);
+        assert!(holds.has_changed(|frame| frame == 1) && !holds.has_changed(|_| false));
+        holds.forget();
         assert_eq!(holds.shown(2, 1, |frame| frame == 1), 1, "a file that has come is found");
         assert_eq!(holds.shown(0, 1, |_| true), 0, "outside of the footage nothing is held");
+    }
+
+    #[test]
+    fn each_file_is_asked_for_once_if_none_is_there() {
+        let (holds, asked) = (Holds::default(), RefCell::new(Vec::new()));
+        let there = |frame: FrameNumber| {
+            asked.borrow_mut().push(frame);
+            frame == 9
+        };
+        let shown: Vec<_> = [1, 2, 3, 6, 5, 8, 9, 7].iter().map(|&frame| holds.shown(frame, 1, there)).collect();
+        assert_eq!(shown, [1, 2, 3, 6, 5, 8, 9, 7]);
+        assert_eq!(asked.take(), [1, 2, 3, 6, 5, 4, 8, 7, 9]);
+        assert_eq!(holds.shown(10, 1, |_| false), 9);
     }
 }

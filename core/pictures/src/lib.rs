@@ -11,6 +11,7 @@
 #![forbid(unsafe_code)]
 
 pub mod backdrop;
+mod blocks;
 pub mod decode;
 mod error;
 mod holds;
@@ -23,7 +24,6 @@ pub mod sequence;
 pub mod store;
 mod stored;
 mod tags;
-mod tiles;
 
 pub use decode::{decode, probe};
 pub use error::DecodeError;

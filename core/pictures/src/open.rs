@@ -5,7 +5,7 @@
 
 use super::error::DecodeError;
 use super::layered::{self, Layered};
-use super::{jpeg, tags, tiles};
+use super::{blocks, jpeg, tags};
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits};
 use rototoon_base::file;
 use rototoon_base::memory::{self, Bytes};
@@ -28,12 +28,12 @@ pub trait Source: BufRead + Seek {}
 impl<T: BufRead + Seek> Source for T {}
 
 /// Opens a picture file and finds its format by its content. `complete` also checks a JPEG file for its end, which
-/// reads all of it, and the tiles of an OpenEXR file.
+/// reads all of it, and the blocks of an OpenEXR file.
 ///
 /// # Errors
 ///
 /// A [`DecodeError`] if there is no file, or no regular file (a folder, a pipe, a device), or its format is unknown, or
-/// it is cut, or its tiles are too large.
+/// it is cut, or its blocks are too large.
 pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     let length = file::length(path)?;
     let file: Box<dyn Source> = Box::new(BufReader::new(file::Repeating(File::open(path)?)));
@@ -55,7 +55,7 @@ pub fn open(path: &Path, complete: bool) -> Result<Reader, DecodeError> {
     }
     if format == ImageFormat::OpenExr && complete {
         let mut file = reader.into_inner();
-        tiles::check(&mut file)?;
+        blocks::check(&mut file)?;
         file.rewind()?;
         reader = ImageReader::with_format(file, format);
     }
@@ -77,7 +77,8 @@ fn big_tiff(reader: Reader) -> Result<Reader, DecodeError> {
 ///
 /// # Errors
 ///
-/// A header that cannot be read, OpenEXR channels of which none is a picture, and TIFF files of whole numbers of 32 bits.
+/// A header that cannot be read, OpenEXR channels of which none is a picture, and TIFF files of whole numbers of 32 bits or of
+/// reversed bits.
 pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeError> {
     let (format, mut file) = match reader.format() {
         Some(format @ (ImageFormat::Tiff | ImageFormat::OpenExr)) => (format, reader.into_inner()),
@@ -90,8 +91,12 @@ pub fn decoder(reader: Reader) -> Result<(Box<dyn ImageDecoder>, bool), DecodeEr
         if tags::wide_whole_numbers(&mut file) {
             return Err(DecodeError::tiff("whole numbers of 32 bits", "8 or 16 bits, or floats"));
         }
+        file.rewind()?;
+        if tags::reversed_bits(&mut file) {
+            return Err(DecodeError::tiff("reversed bits (FillOrder 2)", "the usual order"));
+        }
     }
-    let layered = is_exr && !tiles::headers(&mut file)?.iter().any(layered::is_plain);
+    let layered = is_exr && !blocks::headers(&mut file)?.iter().any(layered::is_plain);
     file.rewind()?;
     if layered {
         return Ok((Box::new(Layered::new(file)?), multiplied));

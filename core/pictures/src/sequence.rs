@@ -168,7 +168,9 @@ impl Sequence {
     /// Width of the footage's pixels divided by their height, as the first file says that can be read; 1 if there is none.
     pub fn pixel_aspect(&self) -> f32 {
         let Footage { first, last, .. } = self.footage;
-        (first..=last).find_map(|frame| self.described(frame)).unwrap_or_default().pixel_aspect
+        // A frame that holds an earlier one has no file of its own to ask.
+        let mut own = (first..=last).filter(|&frame| self.shown(frame) == frame);
+        own.find_map(|frame| self.described(frame)).unwrap_or_default().pixel_aspect
     }
 
     fn inside(&self, frame: FrameNumber) -> Result<(), FrameError> {

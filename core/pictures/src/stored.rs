@@ -153,7 +153,9 @@ struct Ground {
 /// Encoded values in groups of `N`: grey, grey and alpha, colour, or colour and alpha.
 fn whole<const N: usize, V: Copy>(values: &[V], ground: Ground, unit: impl Fn(V) -> f32) -> Vec<Colour> {
     let Ground { multiplied, backdrop } = ground;
+    // An opaque pixel is bit by bit what it is without alpha: its picture is the same one.
     let over = |v: f32, alpha: f32| match multiplied {
+        _ if alpha == 1.0 => v,
         true => backdrop + v.min(alpha) - alpha * backdrop,
         false => backdrop + alpha * (v - backdrop),
     };
@@ -174,7 +176,7 @@ fn whole<const N: usize, V: Copy>(values: &[V], ground: Ground, unit: impl Fn(V)
 fn light_over([r, g, b, alpha]: [f32; 4], multiplied: bool, backdrop: f32) -> Colour {
     let alpha = if alpha.is_nan() { 0.0 } else { alpha.clamp(0.0, 1.0) };
     let own = if multiplied { 1.0 } else { alpha };
-    [r, g, b].map(|v| encoded(own * v + (1.0 - alpha) * to_light(backdrop)))
+    [r, g, b].map(|v| if alpha == 1.0 { encoded(v) } else { encoded(own * v + (1.0 - alpha) * to_light(backdrop)) })
 }
 
 /// Light, encoded and clamped to 0 to 1.
@@ -211,5 +213,36 @@ mod tests {
             let picture = DynamicImage::ImageRgb32F(ImageBuffer::from_pixel(2, 2, Rgb([0.5, value, 1.0])));
             assert_eq!(Stored::new(picture, false).compact().bytes(), 48, "{value}");
         }
+    }
+
+    #[test]
+    fn an_opaque_picture_is_the_same_with_alpha_and_without() {
+        use image::DynamicImage as Picture;
+        let bits = |picture: Picture, multiplied: bool, backdrop: f32| -> Vec<u32> {
+            let stored = Stored::new(picture, multiplied).compact();
+            stored.colours(backdrop).iter().flatten().map(|v| v.to_bits()).collect()
+        };
+        let eight =
+            Picture::ImageRgb8(ImageBuffer::from_fn(256, 1, |x, _| Rgb([x as u8, (x * 7 % 256) as u8, 255 - x as u8])));
+        let sixteen = Picture::ImageRgb16(ImageBuffer::from_fn(4096, 1, |x, _| {
+            Rgb([x as u16 * 16, x as u16 * 15 + 7, 65535 - x as u16])
+        }));
+        let light = |x: u32| (x as f32 - 8.0) / 50.0;
+        let long = ImageBuffer::from_fn(100, 1, |x, _| Rgb([light(x), light(x * 2), light(100 - x)]));
+        let short = ImageBuffer::from_fn(100, 1, |x, _| Rgb([x as f32 / 128.0, 0.25, -0.0]));
+        let with_alpha = |picture: &Picture| match picture {
+            Picture::ImageRgb8(_) => Picture::ImageRgba8(picture.to_rgba8()),
+            Picture::ImageRgb16(_) => Picture::ImageRgba16(picture.to_rgba16()),
+            _ => Picture::ImageRgba32F(picture.to_rgba32f()),
+        };
+        for picture in [eight.clone(), sixteen, Picture::ImageRgb32F(long), Picture::ImageRgb32F(short)] {
+            for (multiplied, backdrop) in [(false, 0.5), (true, 0.5), (false, 1.0), (true, 0.0)] {
+                let (plain, opaque) = (picture.clone(), with_alpha(&picture));
+                assert_eq!(bits(plain, multiplied, backdrop), bits(opaque, multiplied, backdrop));
+            }
+        }
+        let grey = Picture::ImageLuma8(eight.to_luma8());
+        let opaque = Picture::ImageLumaA8(grey.to_luma_alpha8());
+        assert_eq!(bits(grey, false, 0.5), bits(opaque, false, 0.5));
     }
 }

@@ -1,4 +1,5 @@
-//! What the tags of a TIFF file say of its pixels: whether its colours are multiplied by alpha, and of what kind its numbers are.
+//! What the tags of a TIFF file say of its pixels: whether its colours are multiplied by alpha, of what kind its numbers are, and
+//! in which order its bits.
 //!
 //! The tag `ExtraSamples` says it: 1 is alpha that the colours are multiplied by, 2 is alpha that they are not. Programs that composite write 1, as
 //! OpenImageIO does without being asked; painting programs write 2. With any other value the fourth channel
@@ -14,6 +15,10 @@ use tiff::tags::Tag;
 const ASSOCIATED: u16 = 1;
 /// The value of `SampleFormat` for floats.
 const FLOATS: u16 = 3;
+/// The value of `FillOrder` for bytes whose first pixel is in the lowest bit.
+const REVERSED: u16 = 2;
+/// The value of `Compression` for JPEG.
+const JPEG: u16 = 7;
 
 /// Whether a file says that its colours are multiplied by alpha. A file that cannot be read does not: its decoder tells why.
 pub fn multiplied(file: &mut (impl Read + Seek)) -> bool {
@@ -31,13 +36,21 @@ pub fn wide_whole_numbers(file: &mut (impl Read + Seek)) -> bool {
     bits.contains(&32) && !kinds.contains(&FLOATS)
 }
 
+/// Whether the bits in each byte of a file are in reversed order, of which the decoder takes no notice. Scanners and programs for faxes write
+/// such files. JPEG in a TIFF file has an order of its own. A file that cannot be read has not: its decoder tells why.
+pub fn reversed_bits(file: &mut (impl Read + Seek)) -> bool {
+    let Ok(mut file) = Decoder::new(file) else { return false };
+    let mut value = |tag| file.find_tag_unsigned::<u16>(tag).ok().flatten();
+    value(Tag::FillOrder) == Some(REVERSED) && value(Tag::Compression) != Some(JPEG)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::decode::{decode, decode_layer, probe};
     use rototoon_image::colour::decode as to_light;
     use std::fs::File;
     use std::path::Path;
-    use tiff::encoder::colortype::{ColorType, RGB8, RGBA8, RGBA16, RGBA32, RGBA32Float};
+    use tiff::encoder::colortype::{ColorType, Gray8, RGB8, RGBA8, RGBA16, RGBA32, RGBA32Float};
     use tiff::encoder::{TiffEncoder, TiffValue};
     use tiff::tags::Tag;
 
@@ -90,6 +103,24 @@ mod tests {
         write::<RGBA32>(&path, [u32::MAX / 2; 4], 2);
         let said = decode(&path, None).unwrap_err().to_string();
         assert!(said.contains("whole numbers of 32 bits"), "{said}");
+    }
+
+    #[test]
+    fn reversed_bits_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tif");
+        let write = |order: u16| {
+            let mut file = TiffEncoder::new(File::create(&path).unwrap()).unwrap();
+            let mut image = file.new_image::<Gray8>(2, 1).unwrap();
+            image.encoder().write_tag(Tag::FillOrder, order).unwrap();
+            image.write_data(&[255, 0]).unwrap();
+        };
+        write(1);
+        assert_eq!(decode(&path, None).unwrap().data(), [[1.0; 3], [0.0; 3]]);
+        write(2);
+        let said = decode(&path, None).unwrap_err().to_string();
+        assert!(said.contains("reversed bits (FillOrder 2)"), "{said}");
+        assert_eq!(probe(&path).unwrap_err().to_string(), said);
     }
 
     #[test]

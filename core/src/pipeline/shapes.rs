@@ -117,7 +117,7 @@ pub fn import_shifted(
             shape.name.clone_from(name);
         }
     }
-    Ok(Imported { merged: import::into_scene(&mut document.scene, found.shapes), warnings: found.warnings })
+    Ok(Imported { merged: import::into_scene(&mut document.scene, found.shapes)?, warnings: found.warnings })
 }
 
 /// The parts whose name the format cannot write, by their names there.

@@ -9,6 +9,7 @@ use crate::findings::WantedKey;
 use crate::summary::{Entry, Summary};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rototoon::file;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -87,5 +88,5 @@ fn picture(
 ) -> Option<String> {
     let name = &entry.shot.name;
     let sheet = sheets.entry(name.clone()).or_insert_with(|| sheet::read(&folder.join(name)).into_iter().collect());
-    std::fs::read(sheet.get(&key.frame)?).ok().map(|bytes| STANDARD.encode(bytes))
+    file::bytes(sheet.get(&key.frame)?).ok().map(|bytes| STANDARD.encode(bytes))
 }

@@ -14,11 +14,11 @@ use crate::names::PAGE;
 use crate::summary::{Entry, Outcome, Summary, write_own};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use rototoon::file;
 use rototoon::memory::Bytes;
 use rototoon::project::WriteError;
 use rototoon::scene::Verdict;
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 /// What tells a page of a batch from others.
@@ -166,7 +166,7 @@ fn pictures(out: &mut String, entry: &Entry, folder: &Path) {
     }
     out.push_str("<div class=\"sheet\">");
     for (frame, path) in found {
-        let Ok(bytes) = fs::read(&path) else { continue };
+        let Ok(bytes) = file::bytes(&path) else { continue };
         let least = entry.record.findings.least.get(&frame);
         let weak = entry.record.findings.wanted.iter().any(|key| key.frame == frame)
             || least.is_some_and(|value| Verdict::of(*value) == Verdict::Lost);
@@ -245,6 +245,7 @@ mod tests {
     use crate::findings::{Findings, PartFindings};
     use crate::manifest::Shot;
     use crate::record::{Done, Record};
+    use std::fs;
 
     fn shot(name: &str) -> Shot {
         Shot { name: name.into(), project: "in/p.json".into(), blend: None, steps: vec![] }

@@ -158,3 +158,9 @@ fn key_poses_come_in_three_forms() {
     let wrong = parse_key_poses(r#"[{"frame": -1}]"#, "k").unwrap_err().to_string();
     assert_eq!(wrong, "k: key pose [0].frame: found -1, expected a frame number from 0");
 }
+
+#[test]
+fn a_mark_at_the_begin_of_a_file_is_passed_over() {
+    let text = file(&format!("[{}]", posture()));
+    assert_eq!(Clips::parse(&format!("\u{feff}{text}"), "f").unwrap(), Clips::parse(&text, "f").unwrap());
+}

@@ -216,7 +216,8 @@ fn lock(path: &Path) -> Result<Option<File>, AddError> {
 /// Opens the file of a lock, which everybody may write who may write into the folder, whatever the mask of whoever came first.
 /// A file that must not be written is opened for reading: most disks lock it all the same.
 fn open_for_all(path: &Path) -> io::Result<File> {
-    match OpenOptions::new().create(true).truncate(false).write(true).open(path) {
+    // To open a pipe for writing alone would wait for somebody who reads it.
+    match OpenOptions::new().create(true).truncate(false).read(true).write(true).open(path) {
         Ok(file) => {
             #[cfg(unix)]
             {
@@ -226,7 +227,10 @@ fn open_for_all(path: &Path) -> io::Result<File> {
             }
             Ok(file)
         }
-        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path).map_err(|_| error),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => {
+            file::length(path)?;
+            File::open(path).map_err(|_| error)
+        }
         Err(error) => Err(error),
     }
 }

@@ -51,7 +51,8 @@ impl Index {
         let origin = || origin.to_owned();
         let text = String::from_utf8_lossy(bytes);
         let damaged = |reason: String| Self::of(Trouble::Index { origin: origin(), reason });
-        let mut fields = match serde_json::from_str::<Value>(&text) {
+        let plain = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        let mut fields = match serde_json::from_str::<Value>(plain) {
             Ok(Value::Object(fields)) => fields,
             Ok(other) => return damaged(format!("found {}, expected an object", described(Some(&other)))),
             Err(error) => return damaged(error.to_string()),

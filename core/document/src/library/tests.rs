@@ -459,3 +459,23 @@ fn everybody_who_may_write_into_the_folder_may_add() {
     fs::set_permissions(&lock, fs::Permissions::from_mode(0o444)).unwrap();
     put(&mut library, &clip("Cy", "bow", 1), 8.0, "").unwrap();
 }
+
+#[test]
+fn an_index_may_begin_with_a_mark() {
+    let (folder, library) = filled();
+    let folder = folder.path().join("clips");
+    let text = fs::read_to_string(folder.join(INDEX)).unwrap();
+    fs::write(folder.join(INDEX), format!("\u{feff}{text}")).unwrap();
+    let marked = Library::open(&folder);
+    assert_eq!((marked.entries(), marked.troubles().len()), (library.entries(), 0));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_place_of_the_lock_holds_nobody_up() {
+    let (folder, mut library) = filled();
+    let path = folder.path().join("clips").join("library.lock");
+    let _ = fs::remove_file(&path);
+    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+    assert!(put(&mut library, &clip("Cy", "jump", 2), 12.0, "").is_ok());
+}

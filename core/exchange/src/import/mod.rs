@@ -30,6 +30,7 @@
 //! - `picture`: files of another picture size
 //! - `limits`: what a file may ask for
 //! - `names`: names of shapes, each once
+//! - `way`: shapes that do not go straight from key to key
 
 pub mod bvh;
 mod channel;
@@ -63,6 +64,7 @@ mod svg_sheet;
 mod svg_style;
 mod svg_transform;
 mod svg_view;
+mod way;
 
 pub use encoding::foreign_encoding;
 pub use extent::Extent;
@@ -153,12 +155,12 @@ mod tests {
             ..Part::default()
         };
         let mut scene = Scene { footage: footage.clone(), parts: vec![old] };
-        into_scene(&mut scene, vec![shape("leg"), shape("arm"), shape("head")]);
+        into_scene(&mut scene, vec![shape("leg"), shape("arm"), shape("head")]).unwrap();
         let found: Vec<_> = scene.parts.iter().map(|part| (part.name.as_str(), part.depth)).collect();
         assert_eq!(found, [("arm", 3.5), ("leg", 4.0), ("head", 5.0)]);
         assert!(scene.parts[0].keys.contains_key(&2) && scene.parts[0].closed);
         scene.parts[2].name = "head ".into();
-        into_scene(&mut scene, vec![shape("head")]);
+        into_scene(&mut scene, vec![shape("head")]).unwrap();
         assert_eq!((scene.parts.len(), scene.parts[2].name.as_str()), (3, "head "));
     }
 }

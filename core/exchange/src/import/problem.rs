@@ -38,6 +38,11 @@ pub enum ImportError {
     /// The file is too large.
     #[error("found more than {0} elements and texts, expected fewer")]
     Large(u32),
+    /// The shapes have too many points on all frames on which they are shown.
+    #[error(
+        "found more than {0} points of shapes on all frames on which they are shown, expected fewer: import fewer shapes, or into a document of fewer frames"
+    )]
+    Shown(usize),
     /// All keys of the file lie beyond the footage. The error is that of its first shape.
     #[error("{0}")]
     Beyond(Box<Self>),

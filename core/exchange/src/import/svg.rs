@@ -343,10 +343,7 @@ impl<'a> Reader<'a> {
     /// The contours of each sub-path on all keys.
     fn contours(&mut self, node: Node, frames: &Frames) -> Result<Vec<Vec<Vec<Point>>>, ImportError> {
         let Some((first, start)) = frames.first() else { return Ok(Vec::new()) };
-        let unequal = || {
-            let message = format!("found paths of several kinds, expected the commands of frame {first} on each key");
-            ImportError::at(node, message)
-        };
+        let unequal = || unequal(node, *first);
         if frames.iter().any(|(_, paths)| paths.len() != start.len()) {
             return Err(unequal());
         }
@@ -415,14 +412,23 @@ impl<'a> Reader<'a> {
 
     /// The sub-paths of a key, in pixels of the footage.
     fn placed(&mut self, node: Node, key: &Keyed, transform: Transform) -> Result<Vec<Path>, ImportError> {
-        let mut own = paths(node, &key.text, &mut self.points)?;
-        // A fill joins the end of an open path to its start.
-        if node.tag_name().name() != "line" && self.styles.is_filled(node) {
-            own.iter_mut().filter(|path| !path.closed && path.segments.len() > 1).for_each(Path::close);
-        }
+        let is_filled = node.tag_name().name() != "line" && self.styles.is_filled(node);
+        let mut read = |text: &str| {
+            let mut own = paths(node, text, &mut self.points)?;
+            // A fill joins the end of an open path to its start.
+            if is_filled {
+                own.iter_mut().filter(|path| !path.closed && path.segments.len() > 1).for_each(Path::close);
+            }
+            Ok::<_, ImportError>(own)
+        };
+        let mut own = read(&key.text)?;
         if let Some((text, share)) = &key.toward {
-            let to = paths(node, text, &mut self.points)?;
-            // Paths that are built differently are refused with the keys before them.
+            let to = read(text)?;
+            let built =
+                |paths: &[Path]| paths.iter().map(|path| (path.segments.len(), path.closed)).collect::<Vec<_>>();
+            if built(&own) != built(&to) {
+                return Err(unequal(node, key.frame));
+            }
             for (path, to) in own.iter_mut().zip(&to) {
                 path.go(to, *share);
             }
@@ -432,6 +438,12 @@ impl<'a> Reader<'a> {
         }
         Ok(own)
     }
+}
+
+/// The error for keys of several kinds, of which the first is on a frame.
+fn unequal(node: Node, first: FrameNumber) -> ImportError {
+    let message = format!("found paths of several kinds, expected the commands of frame {first} on each key");
+    ImportError::at(node, message)
 }
 
 /// The keys of a shape without those that an export has put between the keys of a part. Its attribute names the frames of the artist's own.

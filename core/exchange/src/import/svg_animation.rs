@@ -134,8 +134,8 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
     let ends = || Some(vec![animate.attribute("from")?.trim(), animate.attribute("to")?.trim()]);
     let values: Vec<&str> =
         list("values").or_else(ends).ok_or_else(|| expect("values", "values separated by semicolons"))?;
-    let seconds =
-        seconds(animate.attribute("dur").unwrap_or("")).ok_or_else(|| expect("dur", "seconds such as 2.5s"))?;
+    let seconds = seconds(animate.attribute("dur").unwrap_or(""))
+        .ok_or_else(|| expect("dur", "seconds such as 2.5s, or a clock such as 00:02.5"))?;
     let held = animate.attribute("calcMode") == Some("discrete");
     let even = |index: usize| index as f64 / if held { values.len() } else { (values.len() - 1).max(1) } as f64;
     let times: Vec<f64> = match list("keyTimes") {
@@ -154,15 +154,29 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
     Ok(Some(Animation { values, held }))
 }
 
-/// A duration in seconds.
+/// A duration in seconds: a number with a unit or without one, or a clock such as `01:30` or `0:01:30.5`.
 fn seconds(text: &str) -> Option<f64> {
     let text = text.trim();
-    let (number, unit) = match (text.strip_suffix("ms"), text.strip_suffix('s')) {
-        (Some(number), _) => (number, 1e-3),
-        (None, Some(number)) => (number, 1.0),
-        (None, None) => (text, 1.0),
+    let units = [("ms", 1e-3), ("min", 60.0), ("h", 3600.0), ("s", 1.0), ("", 1.0)];
+    let counted = || {
+        let (unit, factor) = units.into_iter().find(|(unit, _)| text.ends_with(unit))?;
+        Some(text.strip_suffix(unit)?.parse::<f64>().ok()? * factor)
     };
-    number.parse::<f64>().ok().map(|number| number * unit).filter(|seconds| seconds.is_finite() && *seconds > 0.0)
+    let found = if text.contains(':') { clock(text) } else { counted() };
+    found.filter(|seconds| seconds.is_finite() && *seconds > 0.0)
+}
+
+/// The seconds of a clock with minutes and seconds, and perhaps hours before them.
+fn clock(text: &str) -> Option<f64> {
+    let plain = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit() || byte == b'.');
+    let parts: Vec<&str> = text.split(':').collect();
+    let [whole @ .., last] = &parts[..] else { return None };
+    let mut sum = 0.0;
+    for part in whole {
+        sum = 60.0 * (sum + f64::from(part.parse::<u32>().ok()?));
+    }
+    let last: f64 = last.parse().ok().filter(|_| plain(last))?;
+    (whole.len() <= 2 && last < 60.0).then_some(sum + last)
 }
 
 #[cfg(test)]
@@ -232,6 +246,27 @@ mod tests {
         ] {
             let error = keys(&HELD.replace(from, to)).unwrap_err().to_string();
             assert!(error.contains("line 1, column 7: <animate>: ") && error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn durations_have_units_or_are_clocks() {
+        for (text, wanted) in [
+            ("2", 2.0),
+            (" 2.5s ", 2.5),
+            ("250ms", 0.25),
+            ("1.5min", 90.0),
+            ("0.5h", 1800.0),
+            ("00:01", 1.0),
+            ("02:30.5", 150.5),
+            ("1:00:01", 3601.0),
+        ] {
+            assert_eq!(seconds(text), Some(wanted), "{text}");
+        }
+        for text in
+            ["", "s", "soon", "indefinite", "0", "-1s", "1:", ":1", "1:61", "1:2:3:4", "1:-2", "-1:02", "1:1e1", "inf"]
+        {
+            assert_eq!(seconds(text), None, "{text}");
         }
     }
 }

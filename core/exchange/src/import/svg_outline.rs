@@ -10,7 +10,7 @@ use super::svg_style::Styles;
 use super::svg_view::View;
 use rototoon_base::geometry::Point;
 use roxmltree::Node;
-use svgtypes::{PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser};
+use svgtypes::{NumberListParser, PathParser, PathSegment, PointsParser, SimplePathSegment, SimplifyingPathParser};
 
 /// The path data of a shape element; `None` for other elements. Lengths are of its style or of attributes.
 pub(super) fn outline(node: Node, styles: &Styles, view: &View) -> Result<Option<String>, ImportError> {
@@ -90,8 +90,9 @@ impl Sizes<'_, '_> {
 fn listed(node: Node) -> Result<String, ImportError> {
     let text = node.attribute("points").unwrap_or("");
     let points: Vec<_> = PointsParser::from(text).map(|(x, y)| format!("{x} {y}")).collect();
-    let numbers = text.split([' ', ',', '\t', '\n', '\r']).filter(|part| !part.is_empty()).count();
-    if points.is_empty() || numbers % 2 != 0 {
+    // Numbers need no blanks between them: `10-20` and `.5.5` are two each.
+    let numbers: Result<Vec<f64>, _> = NumberListParser::from(text).collect();
+    if points.is_empty() || numbers.ok().is_none_or(|numbers| numbers.len() % 2 != 0) {
         return Err(ImportError::at(node, format!("points: found {}, expected pairs of numbers", quoted(Some(text)))));
     }
     Ok(format!("M{}", points.join(" ")))

@@ -135,6 +135,7 @@ impl JointMap {
             found,
             expected: expected.to_owned(),
         };
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let document: Value =
             serde_json::from_str(text).map_err(|e| wrong("joints", format!("no JSON ({e})"), "JSON"))?;
         let expected = "an object with a joint, or a list of joints, for each key point";

@@ -22,7 +22,8 @@ mod order;
 mod outline;
 mod written;
 
-use super::Shape;
+use super::limits::MOST_POINTS;
+use super::{ImportError, Shape};
 use crate::between::form;
 use compared::{Compared, Points, is_same};
 use rototoon_base::geometry::Point;
@@ -66,17 +67,31 @@ pub struct Merged {
 }
 
 /// Puts shapes into the scene. Says for each what became of it.
-pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Merged {
+///
+/// # Errors
+///
+/// [`ImportError::Shown`] for shapes that would have more than [`MOST_POINTS`] points on all frames together; the scene is then unchanged.
+pub fn into_scene(scene: &mut Scene, shapes: Vec<Shape>) -> Result<Merged, ImportError> {
+    let before = scene.parts.clone();
+    let merged = merged(scene, shapes);
+    if merged.is_err() {
+        scene.parts = before;
+    }
+    merged
+}
+
+fn merged(scene: &mut Scene, shapes: Vec<Shape>) -> Result<Merged, ImportError> {
     let nearest = scene.parts.iter().map(|part| part.depth).fold(f64::NEG_INFINITY, f64::max);
     let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
     let places = places(&scene.parts, &shapes);
     let named = shapes.iter().map(|shape| shape.name.clone()).collect();
-    let mut into = Into { scene, places, named, depth, found: Vec::new(), merged: Merged::default() };
-    shapes.into_iter().for_each(|shape| into.take(shape));
+    let mut into =
+        Into { scene, places, named, depth, found: Vec::new(), merged: Merged::default(), room: Room::all() };
+    shapes.into_iter().try_for_each(|shape| into.take(shape))?;
     let Into { scene, found, mut merged, .. } = into;
     let moved = put(scene, &found);
     merged.moved = moved.into_iter().map(|place| scene.parts[place].name.clone()).collect();
-    merged
+    Ok(merged)
 }
 
 /// Gives parts depths for the order in which the file has them. Exports write a part by the depth that it has on all frames, so that counts here too, and is
@@ -109,39 +124,60 @@ struct Into<'a> {
     /// The parts that the file has, in its order.
     found: Vec<usize>,
     merged: Merged,
+    room: Room,
+}
+
+/// The points that contours may still have. A shape of a few bytes is shown on all frames of a film.
+struct Room(usize);
+
+impl Room {
+    fn all() -> Self {
+        Self(MOST_POINTS)
+    }
+
+    /// Takes the points of contours before they are made.
+    fn take(&mut self, contours: usize, points: usize) -> Result<(), ImportError> {
+        let left = contours.checked_mul(points).and_then(|count| self.0.checked_sub(count));
+        self.0 = left.ok_or(ImportError::Shown(MOST_POINTS))?;
+        Ok(())
+    }
 }
 
 impl Into<'_> {
     /// Brings the part of a shape's name up to date, or makes a new one.
-    fn take(&mut self, mut shape: Shape) {
+    fn take(&mut self, mut shape: Shape) -> Result<(), ImportError> {
         let Some(place) = self.places.get(&shape.name).copied() else {
-            let name = self.add(shape);
-            return self.told(name, Change::New);
+            let name = self.add(shape)?;
+            self.told(name, Change::New);
+            return Ok(());
         };
         let part = &mut self.scene.parts[place];
         let (name, kept) = (part.name.clone(), unspoken(part, &shape));
         if !kept.is_empty() && part.closed != shape.closed {
             shape.name = self.free(&shape.name);
-            let new = self.add(shape);
-            return self.told(new, Change::Beside(name));
+            let new = self.add(shape)?;
+            self.told(new, Change::Beside(name));
+            return Ok(());
         }
-        let change = update(part, shape, &self.scene.footage);
+        let change = update(part, shape, &self.scene.footage, &mut self.room)?;
         self.found.push(place);
         if !kept.is_empty() && change != Change::Replaced {
             self.merged.kept.push((name.clone(), kept));
         }
         self.told(name, change);
+        Ok(())
     }
 
     /// Makes a new part, and returns its name. Blanks at the ends of a name go if that makes it no other one's.
-    fn add(&mut self, shape: Shape) -> String {
+    fn add(&mut self, shape: Shape) -> Result<String, ImportError> {
         let plain = shape.name.trim().to_owned();
         let is_taken = self.places.contains_key(&plain) || self.named.contains(&plain);
         let name = if is_taken { shape.name.clone() } else { plain };
         self.places.insert(name.clone(), self.scene.parts.len());
-        self.scene.parts.push(Part { name: name.clone(), depth: self.depth, ..part_of(shape) });
+        let own = part_of(shape, &mut self.room)?;
+        self.scene.parts.push(Part { name: name.clone(), depth: self.depth, ..own });
         self.depth += 1.0;
-        name
+        Ok(name)
     }
 
     /// A name with a number that neither a part nor another shape of the file has.
@@ -191,33 +227,35 @@ fn is_still(part: &Part) -> bool {
 }
 
 /// A part that is as the file shows it.
-fn part_of(shape: Shape) -> Part {
-    let mut part = Part { closed: shape.closed, tracks: shown(&shape), ..Part::default() };
+fn part_of(shape: Shape, room: &mut Room) -> Result<Part, ImportError> {
+    let mut part = Part { closed: shape.closed, tracks: shown(&shape, room)?, ..Part::default() };
     part.falloff = shape.falloff.unwrap_or_default();
     (part.name, part.keys, part.absent) = (shape.name, shape.keys, shape.absent);
     part.forget_where_absent();
-    part
+    Ok(part)
 }
 
 /// The contours on all frames on which the file shows a shape.
-fn shown(shape: &Shape) -> BTreeMap<FrameNumber, Vec<Point>> {
+fn shown(shape: &Shape, room: &mut Room) -> Result<BTreeMap<FrameNumber, Vec<Point>>, ImportError> {
     let frames: Vec<FrameNumber> = match (shape.keys.first_key_value(), shape.keys.last_key_value()) {
         (Some((first, _)), Some((last, _))) if first < last => (*first..=*last).collect(),
         _ => Some(shape.extent.shown()).filter(|shown| shown.len() > 1).unwrap_or_default(),
     };
-    frames.into_iter().map(|frame| (frame, form(&shape.keys, frame))).collect()
+    room.take(frames.len(), shape.keys.values().next().map_or(0, Vec::len))?;
+    Ok(frames.into_iter().map(|frame| (frame, form(&shape.keys, frame))).collect())
 }
 
 /// Brings a part up to date with the shape of its name.
-fn update(part: &mut Part, shape: Shape, footage: &Footage) -> Change {
+fn update(part: &mut Part, shape: Shape, footage: &Footage, room: &mut Room) -> Result<Change, ImportError> {
     let same_border = |part: &mut Part| merge_falloff(&mut part.falloff, shape.falloff);
-    let frames = compared_with(part, &shape, footage).map(|compared| merge(part, &shape, footage, &*compared));
-    if let Some(frames) = frames {
-        return if same_border(part) && frames.is_empty() { Change::Nothing } else { Change::Frames(frames) };
+    if let Some(compared) = compared_with(part, &shape, footage) {
+        let frames = merge(part, &shape, footage, &*compared, room)?;
+        let same = same_border(part) && frames.is_empty();
+        return Ok(if same { Change::Nothing } else { Change::Frames(frames) });
     }
     let (name, depth, colour) = (std::mem::take(&mut part.name), part.depth, part.colour);
-    *part = Part { name, depth, colour, ..part_of(shape) };
-    Change::Replaced
+    *part = Part { name, depth, colour, ..part_of(shape, room)? };
+    Ok(Change::Replaced)
 }
 
 /// Takes the falloff that a file gives. Files have its rate, but not its curve. Returns whether it was the same.
@@ -274,7 +312,13 @@ fn of_file(shape: &Shape, frame: FrameNumber) -> Option<Vec<Point>> {
 }
 
 /// Changes a part where the file shows another contour, or another presence. Returns the frames.
-fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &dyn Compared) -> Vec<FrameNumber> {
+fn merge(
+    part: &mut Part,
+    shape: &Shape,
+    footage: &Footage,
+    compared: &dyn Compared,
+    room: &mut Room,
+) -> Result<Vec<FrameNumber>, ImportError> {
     let known = part.keys.keys().chain(part.tracks.keys()).chain(shape.keys.keys());
     let hidden = (footage.first..=footage.last).filter(|&frame| part.is_absent(frame));
     let unseen = (footage.first..=footage.last).filter(|&frame| shape.extent.hides(frame));
@@ -297,12 +341,13 @@ fn merge(part: &mut Part, shape: &Shape, footage: &Footage, compared: &dyn Compa
             None => has || is_undecided(&own, frame),
         };
         if is_other {
+            room.take(1, file.as_ref().map_or(0, Vec::len))?;
             let file = file.map(|file| compared.taken(&own, frame, file));
             set(part, frame, file, shape.keys.contains_key(&frame));
             changed.push(frame);
         }
     }
-    changed
+    Ok(changed)
 }
 
 /// Whether a part that is not tracked yet will be there on a frame: it lies between keys, and nobody has hidden it. Other programs show it on its

@@ -45,7 +45,7 @@ fn written(part: &Part) -> Shape {
 
 fn put(part: Part, shape: Shape) -> (Part, Change) {
     let mut scene = Scene { footage: footage(), parts: vec![part] };
-    let mut merged = into_scene(&mut scene, vec![shape]);
+    let mut merged = into_scene(&mut scene, vec![shape]).unwrap();
     assert_eq!(scene.parts.len(), 1);
     (scene.parts.remove(0), merged.taken.remove(0).change)
 }
@@ -95,6 +95,7 @@ fn names_that_differ_in_blanks_alone_are_not_swapped() {
         let mut scene = Scene { footage: footage(), parts: parts.iter().map(|name| named(name)).collect() };
         let shapes = shapes.iter().map(|name| Shape { name: (*name).into(), ..written(&tracked()) }).collect();
         into_scene(&mut scene, shapes)
+            .unwrap()
             .taken
             .into_iter()
             .map(|taken| (taken.name, taken.change == Change::New))
@@ -164,7 +165,7 @@ fn a_new_part_is_shown_as_the_file_shows_it() {
     let mut scene = Scene { footage: footage(), parts: vec![tracked()] };
     let still = Shape { name: "box".into(), keys: [(3, at(3))].into(), extent: extent([3, 3], &[]), ..shape.clone() };
     let still = Shape { absent: Vec::new(), ..still };
-    let taken = into_scene(&mut scene, vec![shape, still]).taken;
+    let taken = into_scene(&mut scene, vec![shape, still]).unwrap().taken;
     assert!(taken.iter().all(|taken| taken.change == Change::New), "{taken:?}");
     let [_, leg, still] = &scene.parts[..] else { panic!("{}", scene.parts.len()) };
     assert_eq!((leg.depth, still.depth), (4.0, 5.0));
@@ -196,7 +197,7 @@ fn a_range_of_frames_says_nothing_of_others() {
     cut.keys.retain(|frame, _| (4..=6).contains(frame));
     let merged = |shape: Shape| {
         let mut scene = Scene { footage: footage(), parts: vec![part.clone()] };
-        let merged = into_scene(&mut scene, vec![shape]);
+        let merged = into_scene(&mut scene, vec![shape]).unwrap();
         (scene.parts, merged)
     };
     let (parts, told) = merged(cut.clone());
@@ -225,7 +226,8 @@ fn a_part_beside_another_one_takes_no_name_of_the_file() {
     let mut scene = Scene { footage: footage(), parts: vec![tracked()] };
     let open = Shape { keys: [(5, at(5))].into(), closed: false, extent: extent([5, 5], &[]), ..written(&tracked()) };
     let other = Shape { name: "arm 2".into(), ..open.clone() };
-    let names: Vec<_> = into_scene(&mut scene, vec![open, other]).taken.into_iter().map(|taken| taken.name).collect();
+    let names: Vec<_> =
+        into_scene(&mut scene, vec![open, other]).unwrap().taken.into_iter().map(|taken| taken.name).collect();
     assert_eq!(names, ["arm 3", "arm 2"]);
 }
 
@@ -251,7 +253,7 @@ fn parts_that_lie_in_another_order_in_the_file_move() {
     let part = |name: &str, depth| Part { name: name.into(), depth, ..tracked() };
     let mut scene = Scene { footage: footage(), parts: vec![part("arm", 0.0), part("leg", 1.0), part("head", 2.0)] };
     let shapes = [1, 0, 2].map(|k| written(&scene.parts[k])).into();
-    let merged = into_scene(&mut scene, shapes);
+    let merged = into_scene(&mut scene, shapes).unwrap();
     assert_eq!(merged.moved, ["arm"]);
     assert!(merged.taken.iter().all(|taken| taken.change == Change::Nothing));
     let depths: Vec<_> = scene.parts.iter().map(|part| part.depth).collect();
@@ -265,9 +267,9 @@ fn a_depth_that_is_the_same_on_all_frames_counts_as_exports_have_it() {
     scene.parts[0].depths = (1..=12).map(|frame| (frame, 5.0)).collect();
     let before = scene.clone();
     let shapes = |order: [usize; 3]| order.map(|k| written(&before.parts[k])).into();
-    assert!(into_scene(&mut scene, shapes([1, 2, 0])).moved.is_empty());
+    assert!(into_scene(&mut scene, shapes([1, 2, 0])).unwrap().moved.is_empty());
     assert_eq!(scene, before);
-    assert_eq!(into_scene(&mut scene, shapes([2, 1, 0])).moved, ["leg"]);
+    assert_eq!(into_scene(&mut scene, shapes([2, 1, 0])).unwrap().moved, ["leg"]);
     let depths: Vec<_> = scene.parts.iter().map(|part| part.depth_at(3)).collect();
     assert_eq!(depths, [5.0, 3.5, 2.0]);
 }
@@ -295,11 +297,41 @@ fn parts_that_are_no_contours_do_no_harm() {
                     let keys = [4, 5].map(|frame| (frame, points(file))).into();
                     let shape = Shape { keys, closed, extent: extent([4, 5], &[]), ..written(&part) };
                     let mut scene = Scene { footage: footage(), parts: vec![part] };
-                    into_scene(&mut scene, vec![shape]);
+                    into_scene(&mut scene, vec![shape]).unwrap();
                     let counts: BTreeSet<usize> = scene.parts[0].keys.values().map(Vec::len).collect();
                     assert_eq!(counts.len(), 1, "{closed} {own} {tracked} {file}");
                 }
             }
         }
+    }
+}
+
+#[test]
+fn a_small_shape_on_very_many_frames_is_refused() {
+    let points = |shift: f64| (0..400).map(|k| Point::new(f64::from(k) + shift, shift)).collect::<Vec<_>>();
+    let film = Footage { last: 1_000_000, ..footage() };
+    let shape = |closed: bool, keys: &[FrameNumber]| Shape {
+        name: "arm".into(),
+        closed,
+        keys: keys.iter().map(|&frame| (frame, points(f64::from(frame)))).collect(),
+        absent: Vec::new(),
+        falloff: None,
+        extent: Extent::new([keys[0], keys[keys.len() - 1]], &[], &film),
+    };
+    let own = |closed: bool| Part { closed, tracks: [(5, points(0.0))].into(), ..tracked() };
+    let still = shape(true, &[1]);
+    let moving = shape(true, &[1, 1_000_000]);
+    for (parts, shape) in [
+        (Vec::new(), still),
+        (Vec::new(), moving.clone()),
+        (vec![own(false)], moving.clone()),
+        (vec![own(true)], moving.clone()),
+        (vec![Part { keys: BTreeMap::new(), ..own(true) }], moving),
+    ] {
+        let mut scene = Scene { footage: film.clone(), parts };
+        let before = scene.clone();
+        let error = into_scene(&mut scene, vec![shape]).unwrap_err();
+        assert!(error.to_string().starts_with("found more than 20000000 points of shapes on all frames"), "{error}");
+        assert_eq!(scene, before);
     }
 }

@@ -5,10 +5,13 @@
 //! first, since nodes draw their items in this order. A curve has `NumPoints` pairs of `CP`, a control point, and `FP`, the
 //! feather's point. A control point has six numbers: its place (`X`, `Y`) and the places of the handles before it (`Left_X`,
 //! `Left_Y`) and after it (`Right_X`, `Right_Y`). Each number is followed by its animation, a `KeyFrameSet` of `Time` and
-//! `Value`; without keys the number itself counts. Coordinates are pixels with y up.
+//! `Value`, with an `InterpolationMethod`; without keys the number itself counts. Coordinates are pixels with y up.
 //!
 //! - A shape has keys on the frames on which any of its numbers or of its `transform`'s has one. Between keys numbers are taken
-//!   as linear, as Natron does for control points.
+//!   as linear, as Natron does for control points. Where the points then do not go straight, since a transformation turns them, there is a
+//!   key on every frame (`way`).
+//! - A key whose `InterpolationMethod` is 0 holds its number until the next one. Other numbers than 0 and 1 stand for curves: they are
+//!   taken as linear, with a warning.
 //! - Keys beyond the footage are left out (`range`).
 //! - A curve is open if it is not closed yet or was drawn as an open one.
 //! - Left out with a warning: paint strokes, and curves whose transformation is linked, an expression or a perspective.
@@ -28,6 +31,7 @@ use super::path::{NoContours, Path, contours};
 use super::picture::{self, Picture};
 use super::problem::{Fault, LeftOut, parsed};
 use super::range::{Kept, Reach};
+use super::way::add_bent;
 use super::{ImportError, Shape, Shapes};
 use number::{child, curve, named, text_of};
 use rototoon_base::geometry::Point;
@@ -125,11 +129,14 @@ impl Reader<'_> {
     fn shape(&mut self, item: Node) -> Result<Shape, Fault> {
         let knots = knots(item)?;
         let transform = Transform::read(item)?;
-        let frames = self.frames(item, &knots, transform.as_ref());
+        let closed = flag(item, "Closed") && !flag(item, "OpenBezier");
+        let mut frames = self.frames(item, &knots, transform.as_ref());
+        if transform.as_ref().is_some_and(Transform::bends) {
+            add_bent(&mut frames, |frame| Some(self.path(&knots, transform.as_ref(), closed, frame.into())));
+        }
         if knots.len().saturating_mul(frames.len()) > MOST_POINTS {
             self.points.take(usize::MAX, item)?;
         }
-        let closed = flag(item, "Closed") && !flag(item, "OpenBezier");
         let paths: Vec<Path> =
             frames.iter().map(|&frame| self.path(&knots, transform.as_ref(), closed, frame.into())).collect();
         let made = contours(&paths, |count| self.points.take(count, item)).map_err(|problem| match problem {
@@ -173,8 +180,19 @@ impl Reader<'_> {
             self.left_out.push(item, told);
         }
         let mut times = kept.frames;
-        let moved = transform.into_iter().flat_map(Transform::frames);
+        let moving = || transform.into_iter().flat_map(Transform::channels);
+        let moved = moving().flat_map(Channel::turns);
         times.extend(moved.map(|time| time.round().clamp(first.into(), last.into()) as FrameNumber));
+        let own = || knots.iter().flatten().flatten().chain(moving());
+        let ends = own().flat_map(Channel::ends).filter(|time| (f64::from(first)..=f64::from(last)).contains(time));
+        times.extend(ends.map(|time| time as FrameNumber));
+        if own().any(Channel::is_uncertain) {
+            let name = name(item);
+            self.left_out.push(
+                item,
+                format!("the shape {name:?} goes in curves between some of its keys: it is taken to go evenly"),
+            );
+        }
         if times.is_empty() {
             times.insert(self.still);
         }

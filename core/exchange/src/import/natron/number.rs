@@ -1,9 +1,14 @@
 //! Elements and numbers of a Natron project.
 
-use super::super::channel::Channel;
+use super::super::channel::{Channel, Key, Way};
 use super::super::limits::FARTHEST;
 use super::super::problem::{ImportError, quoted};
 use roxmltree::Node;
+
+/// The value of `InterpolationMethod` for a number that holds until the next key (`eKeyframeTypeConstant`).
+const HELD: &str = "0";
+/// The one for a number that goes evenly (`eKeyframeTypeLinear`). Others go in curves.
+const LINEAR: &str = "1";
 
 /// Whether a node is an element with this name.
 pub(super) fn named(node: Node, name: &str) -> bool {
@@ -46,8 +51,14 @@ pub(super) fn keys(animation: Node) -> Result<Option<Channel>, ImportError> {
     let key = |key: Node| {
         let part =
             |name| child(key, name).ok_or_else(|| ImportError::at(key, format!("found no <{name}>, expected one")));
-        Ok((number(part("Time")?)?, number(part("Value")?)?))
+        let way = child(key, "InterpolationMethod").map_or(LINEAR, text_of);
+        let way = match way {
+            HELD => Way::Held,
+            LINEAR => Way::Linear,
+            _ => Way::Other,
+        };
+        Ok(Key { frame: number(part("Time")?)?, value: number(part("Value")?)?, way })
     };
     let items = set.children().filter(|node| named(*node, "item"));
-    Ok(Channel::keyed(items.map(key).collect::<Result<Vec<_>, ImportError>>()?))
+    Ok(Channel::of_keys(items.map(key).collect::<Result<Vec<_>, ImportError>>()?))
 }

@@ -191,3 +191,40 @@ fn a_falloff_is_read_with_its_ramp() {
         assert_eq!(found.warnings.len(), usize::from(rate == keyed), "{:?}", found.warnings);
     }
 }
+
+#[test]
+fn keys_that_hold_do_so_until_the_next_one_and_curves_are_told() {
+    let method =
+        |text: &str, number: u8| text.replace("<InterpolationMethod>1<", &format!("<InterpolationMethod>{number}<"));
+    let plain = project(&bezier("arm", "", &rectangle(&[(2.0, 0.0), (6.0, 8.0), (9.0, 8.0)]), true));
+    let held = natron(&method(&plain, 0), &footage(), 1).unwrap();
+    assert_eq!(held.warnings, [""; 0]);
+    assert_eq!(held.shapes[0].keys.keys().copied().collect::<Vec<_>>(), [2, 5, 6, 9]);
+    corners(&held.shapes[0], 5, [(40.0, 20.0), (60.0, 20.0), (60.0, 30.0), (40.0, 30.0)]);
+    corners(&held.shapes[0], 6, [(48.0, 20.0), (68.0, 20.0), (68.0, 30.0), (48.0, 30.0)]);
+    let curved = natron(&method(&plain, 2), &footage(), 1).unwrap();
+    assert_eq!(curved.shapes, natron(&plain, &footage(), 1).unwrap().shapes);
+    assert!(curved.warnings.len() == 1 && curved.warnings[0].contains("goes in curves"), "{:?}", curved.warnings);
+}
+
+#[test]
+fn a_curve_that_turns_between_keys_has_a_key_on_every_frame() {
+    let keys = |number: u8| {
+        let key = |time: u8, value: u8| {
+            format!(
+                "<item><Time>{time}</Time><Value>{value}</Value><InterpolationMethod>{number}</InterpolationMethod></item>"
+            )
+        };
+        format!("<Curve><KeyFrameSet>{}{}</KeyFrameSet></Curve>", key(2, 0), key(6, 180))
+    };
+    let read = |number: u8| {
+        let turned = [parameter("rotate", &[&keys(number)]), parameter("center", &["50", "25"])].concat();
+        natron(&project(&bezier("arm", &turned, &rectangle(&[]), true)), &footage(), 1).unwrap().shapes.remove(0)
+    };
+    let turned = read(1);
+    assert_eq!(turned.keys.keys().copied().collect::<Vec<_>>(), [2, 3, 4, 5, 6]);
+    corners(&turned, 4, [(55.0, 15.0), (55.0, 35.0), (45.0, 35.0), (45.0, 15.0)]);
+    let held = read(0);
+    assert_eq!(held.keys.keys().copied().collect::<Vec<_>>(), [2, 5, 6]);
+    corners(&held, 5, [(40.0, 20.0), (60.0, 20.0), (60.0, 30.0), (40.0, 30.0)]);
+}

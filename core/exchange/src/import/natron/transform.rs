@@ -59,9 +59,16 @@ impl Transform {
         Ok((!still).then_some(found))
     }
 
-    /// The frames on which it has keys.
-    pub(super) fn frames(&self) -> impl Iterator<Item = f64> + '_ {
-        self.pairs.iter().flatten().chain([&self.rotation]).chain(&self.matrix).flat_map(Channel::turns)
+    /// Its numbers.
+    pub(super) fn channels(&self) -> impl Iterator<Item = &Channel> {
+        self.pairs.iter().flatten().chain([&self.rotation]).chain(&self.matrix)
+    }
+
+    /// Whether points may go on curves between its keys.
+    pub(super) fn bends(&self) -> bool {
+        let [_, _, scale, skew] = &self.pairs;
+        let shape = scale.iter().chain(skew).chain([&self.rotation]).chain(&self.matrix);
+        shape.into_iter().any(|channel| channel.turns().next().is_some())
     }
 
     /// The map of points on a frame.

@@ -5,7 +5,8 @@
 //! with the hexadecimal digits of a 32-bit float. It may be a list of keys, each with a frame and a value. A list `px`
 //! begins with the frame of its points. Coordinates are pixels with y up, of the node's or the script's `format` (`picture`).
 //!
-//! - A shape has keys on the frames on which any of its numbers has one. Between keys numbers are taken as linear.
+//! - A shape has keys on the frames on which any of its numbers has one. Between keys numbers are taken as linear. Where the points then do
+//!   not go straight, since a transformation turns them, there is a key on every frame (`way`).
 //! - Keys beyond the footage are left out (`range`).
 //! - Flag 8192 of a curve: handles are relative to their points. Flag 32: the curve is open.
 //! - A point of a B-spline is one pair, perhaps with a weight after it. The spline is uniform and cubic, and its points are
@@ -31,6 +32,7 @@ use super::path::{Path, contours};
 use super::picture::{self, Picture};
 use super::problem::Fault;
 use super::range::{Kept, Reach};
+use super::way::add_bent;
 use super::{ImportError, Shape, Shapes};
 use attributes::attribute;
 use glam::DAffine2;
@@ -174,7 +176,10 @@ impl Reader<'_> {
         let curve = curves.items().iter().find(|curve| curve.name() == Some("cc"));
         let curve = curve.ok_or_else(|| self.wrong(item, "curvegroup", "found no curve, expected {cc …}"))?;
         let (outline, time, at) = self.outline(curve, name, kind == "bspline")?;
-        let frames = self.frames((item, name), &outline.pairs, time, &chain, at);
+        let mut frames = self.frames((item, name), &outline.pairs, time, &chain, at);
+        if chain.iter().any(|transform| transform.bends()) {
+            add_bent(&mut frames, |frame| Some(self.path(&outline, &chain, frame.into())));
+        }
         let full = || {
             let message = format!("found more than {MOST_POINTS} points up to here, expected fewer");
             Fault::Wrong(self.wrong(at, "p", message))

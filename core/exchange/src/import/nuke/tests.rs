@@ -278,3 +278,43 @@ fn a_shape_that_stands_still_speaks_of_its_lifetime_alone() {
     assert_eq!(spoken(4, 4), [4]);
     assert_eq!(spoken(4, 6), [4, 5, 6]);
 }
+
+#[test]
+fn a_shape_that_turns_between_keys_has_a_key_on_every_frame() {
+    let points = "{p {0 0} {10 50} {0 0} {0 0} {50 50} {0 0} {0 0} {50 90} {0 0}}";
+    let read =
+        |t: &str| nuke(&script("bezier", points, &format!("{{t {t}}}")), &footage(), 1).unwrap().shapes.remove(0);
+    let turned = read("50 50 0 0 0 0 0 0 {{2 0} {6 180}}");
+    assert_eq!(turned.keys.keys().copied().collect::<Vec<_>>(), [2, 3, 4, 5, 6]);
+    // A quarter turn about (50, 50), y up, in a picture of 100 lines.
+    for (found, wanted) in turned.keys[&4].iter().zip([(50.0, 90.0), (50.0, 50.0), (10.0, 50.0)]) {
+        assert!(found.distance(Point::new(wanted.0, wanted.1)) < 1e-3, "{:?}", turned.keys[&4]);
+    }
+    assert_eq!(read("50 50 0 0 0 0 0 0 {{2 0} {6 360}}").keys.len(), 5, "a whole turn");
+    assert_eq!(read("50 50 0 {{2 0} {6 9}} 0 0 0 0 30").keys.len(), 2, "a move goes straight");
+    assert_eq!(read("50 50 0 0 0 0 0 0 0 {{2 1} {6 2}} 1 1").keys.len(), 2, "and so does a growth");
+    assert_eq!(
+        read("{{2 0} {6 50}} 50 0 0 0 0 0 0 0 {{2 1} {6 2}} 1 1").keys.len(),
+        5,
+        "but not about a pivot that moves"
+    );
+}
+
+#[test]
+fn shapes_beside_labels_and_python_are_all_read() {
+    let points = "{p {0 0} {10 0} {0 0} {0 0} {50 0} {0 0} {0 0} {50 90} {0 0}}";
+    let shape = |name: &str| script("bezier", points, "").replace("Bezier1", name);
+    for text in [
+        r#" label "5\" board""#,
+        r#" knobChanged "d = \{\"a\": 1\}\nif d:\n  print(\"\}\")""#,
+        r" label \{hello",
+        r#" label {5" board}"#,
+        " # a comment with { brace and \" quote",
+    ] {
+        let note = if text.contains('#') { format!("{}\n", text.trim()) } else { format!("NoOp {{\n{text}\n}}\n") };
+        let whole = format!("#! /usr/Nuke -nx\n{note}{}{note}{}{note}", shape("first"), shape("second"));
+        let found = nuke(&whole, &footage(), 1).unwrap();
+        let names: Vec<_> = found.shapes.iter().map(|shape| shape.name.as_str()).collect();
+        assert_eq!(names, ["second", "first"], "{text}");
+    }
+}

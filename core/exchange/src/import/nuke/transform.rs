@@ -70,6 +70,11 @@ impl Transform {
         all.flat_map(Channel::turns)
     }
 
+    /// Whether points may go on curves between its keys.
+    pub(super) fn bends(&self) -> bool {
+        self.scale.iter().chain([&self.rotation]).any(|channel| channel.turns().next().is_some())
+    }
+
     /// The map of points on a frame.
     pub(super) fn at(&self, frame: f64) -> DAffine2 {
         let pair = |[x, y]: &[Channel; 2]| Point::new(x.at(frame), y.at(frame));

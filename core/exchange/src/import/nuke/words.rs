@@ -1,7 +1,8 @@
 //! Splits a Nuke script into words and lists.
 //!
 //! A script is lines of Tcl. What matters here are its lists: words in braces, with lists in them. A word in quotation marks
-//! may contain blanks.
+//! may contain blanks. As in Tcl, a quotation begins only where a word does, a backslash makes the next character a plain one, and a line
+//! that begins with `#` is a comment. Labels and Python of a script are full of such marks.
 
 use super::super::limits::{DEEPEST, MOST_NODES};
 use super::super::{ImportError, Place};
@@ -73,6 +74,10 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
                 at += 1;
                 continue;
             }
+            b'#' if open.len() == 1 && begins_line(&bytes[..at]) => {
+                at += bytes[at..].iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len() - at);
+                continue;
+            }
             b'{' => {
                 if open.len() > DEEPEST {
                     let message = format!("found lists nested {} deep, expected at most {DEEPEST}", open.len());
@@ -90,7 +95,7 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
                 Item { start: from, kind: Kind::List(list) }
             }
             _ => {
-                let (word, end) = word(text, start)?;
+                let (word, end) = word(text, start, open.len() > 1)?;
                 at = end;
                 Item { start, kind: Kind::Word(word) }
             }
@@ -110,15 +115,34 @@ pub fn items(text: &str) -> Result<Vec<Item<'_>>, ImportError> {
     }
 }
 
-/// The word that begins at a byte, without its quotation marks, and the byte after it.
-fn word(text: &str, start: usize) -> Result<(&str, usize), ImportError> {
-    if let Some(quoted) = text[start..].strip_prefix('"') {
-        let length = quoted.find('"').ok_or_else(|| wrong(text, start, "word", "found no closing quotation mark"))?;
-        return Ok((&quoted[..length], start + 1 + length + 1));
+/// Whether only blanks stand before a byte on its line.
+fn begins_line(before: &[u8]) -> bool {
+    before.iter().rev().find(|byte| !matches!(byte, b' ' | b'\t')).is_none_or(|byte| b"\n\r".contains(byte))
+}
+
+/// The word that begins at a byte, without its quotation marks, and the byte after it. A quotation mark that nothing closes is a letter within
+/// braces, where Tcl reads plain text.
+fn word(text: &str, start: usize, within_braces: bool) -> Result<(&str, usize), ImportError> {
+    let bytes = text.as_bytes();
+    if bytes[start] == b'"' {
+        let end = unescaped(bytes, start + 1, |byte| byte == b'"');
+        if end < bytes.len() {
+            return Ok((&text[start + 1..end], end + 1));
+        }
+        if !within_braces {
+            return Err(wrong(text, start, "word", "found no closing quotation mark without a backslash before it"));
+        }
     }
-    let ends = |byte: &u8| byte.is_ascii_whitespace() || b"{}\"".contains(byte);
-    let length = text.as_bytes()[start..].iter().position(ends).unwrap_or(text.len() - start);
-    Ok((&text[start..start + length], start + length))
+    let end = unescaped(bytes, start, |byte| byte.is_ascii_whitespace() || b"{}".contains(&byte));
+    Ok((&text[start..end], end))
+}
+
+/// The first byte from `at` on that is asked for and has no backslash before it; the end if there is none.
+fn unescaped(bytes: &[u8], mut at: usize, is_asked: impl Fn(u8) -> bool) -> usize {
+    while at < bytes.len() && !is_asked(bytes[at]) {
+        at += if bytes[at] == b'\\' { 2 } else { 1 };
+    }
+    at.min(bytes.len())
 }
 
 #[cfg(test)]
@@ -136,11 +160,35 @@ mod tests {
             ("a }", "line 1, column 3", "without an opening"),
             ("a\n {b", "line 2, column 2", "no closing brace"),
             ("\"a", "line 1, column 1", "no closing quotation mark"),
+            ("a \"b\\\"", "line 1, column 3", "without a backslash before it"),
         ] {
             let error = items(text).unwrap_err().to_string();
             assert!(error.contains(place) && error.contains(message), "{error}");
         }
         let deep = "{".repeat(1000);
         assert!(items(&deep).unwrap_err().to_string().contains("nested"));
+    }
+
+    #[test]
+    fn marks_in_texts_are_letters() {
+        let words = |text| {
+            let mut found = Vec::new();
+            fn walk<'a>(items: &[Item<'a>], found: &mut Vec<&'a str>) {
+                for item in items {
+                    found.extend(item.word());
+                    walk(item.items(), found);
+                }
+            }
+            walk(&items(text).unwrap(), &mut found);
+            found
+        };
+        assert_eq!(words(r#"label "5\" board" name a"#), ["label", r#"5\" board"#, "name", "a"]);
+        assert_eq!(words(r#"knob "d = \{\"a\": \}" b"#), ["knob", r#"d = \{\"a\": \}"#, "b"]);
+        assert_eq!(words(r#"label \{hello b\ c \" d"#), ["label", r"\{hello", r"b\ c", r#"\""#, "d"]);
+        assert_eq!(words(r#"label {5" board} b"#), ["label", r#"5""#, "board", "b"]);
+        assert_eq!(words("{ \"a} b"), ["\"a", "b"]);
+        assert_eq!(words("a\n # it's {5\" \nb # {c}"), ["a", "b", "#", "c"]);
+        assert_eq!(words("#! /usr/Nuke\na"), ["a"]);
+        assert_eq!(words("größe\\"), ["größe\\"]);
     }
 }

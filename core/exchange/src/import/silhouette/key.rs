@@ -7,6 +7,7 @@
 use super::super::ImportError;
 use super::super::limits::near;
 use super::super::problem::{number, quoted};
+use super::is_true;
 use super::place::Place;
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Footage, FrameNumber};
@@ -45,7 +46,7 @@ impl<'a> Key<'a> {
         if !spline && !kind.eq_ignore_ascii_case("bezier") {
             return Err(ImportError::at(path, format!("type: found {kind:?}, expected \"Bezier\" or \"Bspline\"")));
         }
-        let closed = path.attribute("closed").is_none_or(|text| text.eq_ignore_ascii_case("true"));
+        let closed = path.attribute("closed").is_none_or(is_true);
         let points = path.children().filter(|n| n.tag_name().name() == "Point");
         let knots = points.map(|point| knot(point, place)).collect::<Result<Vec<_>, _>>()?;
         if knots.is_empty() {

@@ -6,7 +6,8 @@
 //!
 //! - How handles are written is found out (`reading`).
 //! - B-splines are uniform and cubic. The ends of an open one are repeated three times, so the curve reaches them.
-//! - Layers may have a transformation, which is applied here (`matrix`). A shape then also has keys where it turns.
+//! - Layers may have a transformation, which is applied here (`matrix`). A shape then also has keys where it turns, and on every frame
+//!   between them on which its points do not go straight (`way`).
 //! - Keys beyond the footage are left out (`range`).
 //! - A shape that cannot be read is left out with a warning, such as an X-spline. If there is no other one, its error is that of the file.
 //! - Hidden shapes, and those in hidden layers, are left out with a warning. A shape is hidden where its opacity is 0; other
@@ -19,11 +20,12 @@ mod place;
 mod reading;
 
 use super::channel::Channel;
-use super::limits::{Points, near};
+use super::limits::{MOST_POINTS, Points, near};
 use super::names::Names;
 use super::path::{NoContours, Path, contours};
 use super::problem::{Fault, LeftOut, number, parsed};
 use super::range::{Kept, Reach};
+use super::way::add_bent;
 use super::{ImportError, Shape, Shapes};
 use key::{Form, Key};
 use matrix::Transform;
@@ -96,7 +98,7 @@ struct Layer {
 
 impl Layer {
     fn read(node: Node, first: f64) -> Self {
-        let hidden = node.attribute("hidden").is_some_and(|text| text.eq_ignore_ascii_case("true"));
+        let hidden = node.attribute("hidden").is_some_and(is_true);
         let transform = property(node, "transform.matrix").map_or(Ok(None), |node| Transform::read(node, first));
         Self { hidden, lost: lost(node), transform }
     }
@@ -163,8 +165,14 @@ impl Reader<'_> {
         for layer in layers {
             chain.extend(layer.transform.as_ref().map_err(|reason| Fault::Omitted(reason.clone()))?);
         }
-        let frames = self.frames(node, &name, &keys, &chain);
+        let mut frames = self.frames(node, &name, &keys, &chain);
         let reading = Reading::of(&keys.iter().map(|key| &key.form).collect::<Vec<_>>(), self.footage);
+        // Points go straight while a matrix changes, but not if it is a perspective or if the path or another matrix changes too.
+        if chain.iter().any(|transform| !transform.turns().is_empty()) {
+            let path = |frame| reading.path(&key::form(&keys, frame));
+            add_bent(&mut frames, |frame| self.placed(path(frame), &chain, frame, property).ok());
+            self.room(frames.len().saturating_mul(keys[0].form.knots.len()), property)?;
+        }
         let mut paths = Vec::new();
         for &frame in &frames {
             paths.push(self.placed(reading.path(&key::form(&keys, frame)), &chain, frame, property)?);
@@ -181,6 +189,11 @@ impl Reader<'_> {
         never.into_iter().for_each(|never| self.left_out.push(node, never));
         let keyed = property.children().any(|node| node.has_tag_name("Key"));
         Ok(Shape { extent: shape.extent.of_keys(keyed), ..shape })
+    }
+
+    /// Refuses more points than a file may have, before they are made.
+    fn room(&mut self, points: usize, at: Node) -> Result<(), ImportError> {
+        if points > MOST_POINTS { self.points.take(usize::MAX, at) } else { Ok(()) }
     }
 
     /// The keys of a path in the order of time, at least one.
@@ -228,6 +241,11 @@ impl Reader<'_> {
     }
 }
 
+/// Whether a text says yes. Files that are written by hand have numbers.
+fn is_true(text: &str) -> bool {
+    text.trim().eq_ignore_ascii_case("true") || text.trim() == "1"
+}
+
 /// A property of a shape or a layer itself.
 fn property<'a, 'b>(owner: Node<'a, 'b>, id: &str) -> Option<Node<'a, 'b>> {
     let direct =
@@ -239,7 +257,7 @@ fn property<'a, 'b>(owner: Node<'a, 'b>, id: &str) -> Option<Node<'a, 'b>> {
 /// What a shape or a layer does beside adding its area to those below; `None` for nothing.
 fn lost(owner: Node) -> Option<String> {
     let value = |id| property(owner, id)?.children().find(Node::is_element)?.text().map(str::trim);
-    let inverted = value("invert").is_some_and(|text| text.eq_ignore_ascii_case("true") || text == "1");
+    let inverted = value("invert").is_some_and(is_true);
     // The greatest of several coverages and their sum have the same outline.
     let plain = |mode: &&str| ["add", "max", "normal"].iter().any(|plain| mode.eq_ignore_ascii_case(plain));
     let mode = value("mode").filter(|mode| !mode.is_empty() && !plain(mode));

@@ -269,3 +269,17 @@ fn hidden_inverted_and_subtracting_shapes_are_told() {
     let hidden = silhouette(&shown.replace("\"False\"", "\"True\""), &FOOTAGE()).unwrap_err().to_string();
     assert!(hidden.contains("found no shape"), "{hidden}");
 }
+
+#[test]
+fn flags_may_be_numbers() {
+    let points = ["(0,0)", "(0.2,0)", "(0.2,0.2)"];
+    let read = |attributes: &str, closed: &str| {
+        let key = key(3, "Bezier", &points).replace("closed=\"True\"", &format!("closed=\"{closed}\""));
+        silhouette(&file(attributes, &key), &FOOTAGE()).unwrap()
+    };
+    for (closed, wanted) in [("1", true), ("true", true), ("0", false), ("False", false)] {
+        assert_eq!(read("label=\"a\"", closed).shapes[0].closed, wanted, "{closed}");
+    }
+    let hidden = silhouette(&file("label=\"a\" hidden=\"1\"", &key(3, "Bezier", &points)), &FOOTAGE());
+    assert!(hidden.is_err() || hidden.is_ok_and(|found| found.shapes.is_empty()));
+}

@@ -171,6 +171,11 @@ fn what_cannot_be_read_is_left_out_and_the_others_come_in() {
             "<path id='m' d='M0 0h1'><animate attributeName='d' dur='0.2s' values='M0 0h1;M0 0h1v1'/></path>",
             "<path> \"m\" is left out: found paths of several kinds",
         ),
+        // The value at the very end is one frame after the footage, and no key.
+        (
+            "<path id='e' d='M0 0h1v1z'><animate attributeName='d' dur='0.375s' values='M0 0h1v1z;M3 3h2v1l-5 3z'/></path>",
+            "<path> \"e\" is left out: found paths of several kinds, expected the commands of frame",
+        ),
     ] {
         let found = read(&(bad.to_owned() + good)).unwrap();
         assert_eq!((found.shapes.len(), found.shapes[0].name.as_str()), (1, "good"), "{bad}");
@@ -307,4 +312,15 @@ fn an_edit_of_a_film_of_rototoon_is_the_form_on_its_first_frame() {
     // In the film of another program the animation counts.
     let foreign = text.replace("data-first", "first").replacen("d=\"M1 0L", "d=\"M1 -2L", 1);
     assert_eq!(svg(&foreign, &footage(), 5).unwrap().shapes[0].keys[&6], at(1.0));
+}
+
+#[test]
+fn numbers_of_points_need_no_blanks_between_them() {
+    let found = |points: &str| read(&format!("<polygon points='{points}'/>")).unwrap().shapes.remove(0).keys;
+    let wanted = found("10 -20 30 -40 50 -60");
+    for points in ["10-20 30-40 50-60", "10-20,30-40,50-60", "1e1-2e1,30-40 5e+1-60"] {
+        assert_eq!(found(points), wanted, "{points}");
+    }
+    assert_eq!(found("10.5.5 30 40 50 60"), found("10.5 0.5 30 40 50 60"));
+    assert!(read("<polygon points='10-20-30'/>").is_err() && read("<polygon points='1 2 3 4 x'/>").is_err());
 }

@@ -41,6 +41,7 @@ fn names_are_simplified() {
 fn maps_say_what_is_wrong() {
     let map = JointMap::parse(r#"{"l_wrist": "Hand", "chest": ["A", "B"]}"#).unwrap();
     assert_eq!(map.0[&1], ["A", "B"]);
+    assert_eq!(JointMap::parse("\u{feff}{\"l_wrist\": \"Hand\", \"chest\": [\"A\", \"B\"]}").unwrap().0, map.0);
     let error = |text: &str| JointMap::parse(text).unwrap_err().to_string();
     assert!(error("{").starts_with("joints: found no JSON"));
     assert!(error("[1]").starts_with("joints: found a list of 1, expected an object"));
