@@ -11,7 +11,10 @@ pub fn silhouette(data: &[u8]) {
     let footage = given::footage();
     if let Ok(found) = import(&text, &footage) {
         let mut scene = Scene { footage, parts: Vec::new() };
-        into_scene(&mut scene, found.shapes);
+        // A file may show its shapes on more frames than a document can have.
+        if into_scene(&mut scene, found.shapes).is_err() {
+            return;
+        }
         // Coordinates may be too large for a document; then it is not saved, with a message.
         let _ = Document::new(scene.clone()).problems();
         for part in &scene.parts {
