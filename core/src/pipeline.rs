@@ -71,7 +71,7 @@ pub use report::{Counts, PartReport, Report, Together, Weakest};
 pub use reshape::{Given, Mirror, ReshapeJob, Reshaped, Side, Sides, at_rate_of, reshape};
 pub use seen::{Noted, changed};
 pub use shapeless::nothing_for;
-pub use shapes::{ShapeFormat, import_shifted, shapes_text};
+pub use shapes::{ShapeFormat, import_shifted};
 pub use sheet::{Sheet, sheet};
 pub use sheet_marks::no_picture;
 pub use style::{CapturedClip, ClipJob, clip, translate, translate_and_judge};

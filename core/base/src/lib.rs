@@ -39,6 +39,7 @@
 #![forbid(unsafe_code)]
 
 pub mod curve;
+pub mod encoding;
 pub mod file;
 pub mod geometry;
 pub mod limits;
