@@ -2,7 +2,9 @@
 //!
 //! A pipe would wait for a writer for ever, and a device such as `/dev/zero` has no end. Both are errors at once.
 
-use crate::encoding::foreign_encoding;
+mod encoding;
+
+use encoding::foreign_encoding;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;

@@ -39,7 +39,6 @@
 #![forbid(unsafe_code)]
 
 pub mod curve;
-pub mod encoding;
 pub mod file;
 pub mod geometry;
 pub mod limits;

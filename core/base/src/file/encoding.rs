@@ -1,7 +1,7 @@
 //! Which encoding a file has that is not UTF-8, so that a message can say how to save it.
 
 /// The encoding that a file names at its beginning, by a mark or in the header of XML; `None` if it names none, or UTF-8.
-pub fn foreign_encoding(bytes: &[u8]) -> Option<String> {
+pub(super) fn foreign_encoding(bytes: &[u8]) -> Option<String> {
     const HEADER: usize = 200;
     match bytes {
         [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => return Some("UTF-16".to_owned()),
