@@ -323,8 +323,16 @@ fn a_document_is_saved_and_loaded_and_bad_ones_are_not_saved() {
     let error = document.save(&path).unwrap_err().to_string();
     assert!(error.contains(r#"parts[0] "arm".keys."0"[1]: found [NaN, 4.0]"#), "{error}");
     assert_eq!(fs::read(&path).unwrap(), before);
-    fs::write(&path, b"\xff\xfe").unwrap();
+    fs::write(&path, b"\xff").unwrap();
     assert!(Document::load(&path).unwrap_err().to_string().ends_with("byte 0 is not UTF-8 text"));
+    // What editors of Windows call "Unicode".
+    fs::write(&path, b"\xff\xfe{\0").unwrap();
+    assert!(
+        Document::load(&path)
+            .unwrap_err()
+            .to_string()
+            .ends_with("found a text in UTF-16, expected UTF-8: save it as UTF-8")
+    );
     assert!(
         Document::load(&folder.path().join("none")).unwrap_err().to_string().contains("none: cannot read the document")
     );

@@ -2,6 +2,9 @@
 //!
 //! A pipe would wait for a writer for ever, and a device such as `/dev/zero` has no end. Both are errors at once.
 
+mod encoding;
+
+use encoding::foreign_encoding;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
@@ -44,12 +47,31 @@ pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
 ///
 /// # Errors
 ///
-/// As for [`bytes`]; a byte that is not UTF-8 is named by its index.
+/// As for [`bytes`], and for [`utf8`].
 pub fn text(path: &Path) -> io::Result<String> {
-    String::from_utf8(bytes(path)?).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        io::Error::new(io::ErrorKind::InvalidData, format!("byte {at} is not UTF-8 text"))
-    })
+    utf8(bytes(path)?)
+}
+
+/// The text in the bytes of a file.
+///
+/// # Errors
+///
+/// Another encoding than UTF-8 is named if the text begins as such a one; else a byte that is not UTF-8 by its index.
+pub fn utf8(bytes: Vec<u8>) -> io::Result<String> {
+    let wrong = |message: String| io::Error::new(io::ErrorKind::InvalidData, message);
+    let named = |bytes: &[u8]| {
+        let encoding = foreign_encoding(bytes)?;
+        Some(wrong(format!("found a text in {encoding}, expected UTF-8: save it as UTF-8")))
+    };
+    match String::from_utf8(bytes) {
+        // UTF-16 without any letter beyond ASCII is UTF-8 too, with a zero beside each letter.
+        Ok(text) if text.contains('\0') => named(text.as_bytes()).map_or(Ok(text), Err),
+        Ok(text) => Ok(text),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            Err(named(error.as_bytes()).unwrap_or_else(|| wrong(format!("byte {at} is not UTF-8 text"))))
+        }
+    }
 }
 
 /// Whether the error of a lock says that the disk knows no locks: some disks of the network, one whose lock service does not run,
@@ -121,6 +143,11 @@ mod tests {
         assert_eq!(text(&path).unwrap(), "ä\n");
         std::fs::write(&path, b"ab\xFFc").unwrap();
         assert_eq!(text(&path).unwrap_err().to_string(), "byte 2 is not UTF-8 text");
+        for utf16 in [&b"\xFF\xFE{\0"[..], b"{\0}\0", b"\0{\0\xE4"] {
+            std::fs::write(&path, utf16).unwrap();
+            let said = text(&path).unwrap_err().to_string();
+            assert_eq!(said, "found a text in UTF-16, expected UTF-8: save it as UTF-8");
+        }
         assert_eq!(bytes(folder.path()).unwrap_err().to_string(), "it is a folder, expected a file");
     }
 

@@ -3,6 +3,7 @@
 use crate::failure::{Failure, line};
 use crate::{arguments, project};
 use clap::{Arg, ArgMatches, Command, value_parser};
+use rototoon::file;
 use rototoon::import::ImportError;
 use rototoon::pipeline::{self, Imported, PipelineError, ShapeFormat};
 use rototoon::project::Document;
@@ -152,8 +153,7 @@ fn numbered(given: &ArgMatches, document: &Document, pattern: &FramePattern) -> 
 /// Puts the shapes of a file into the document. The inner error is that of a file without any shape.
 fn read(given: &ArgMatches, document: &mut Document, shapes: &Shapes) -> Result<Result<Imported, Failure>, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", shapes.path.display()));
-    let text =
-        pipeline::shapes_text(&shapes.path).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
+    let text = file::text(&shapes.path).map_err(|error| failed(&format!("cannot read the shapes: {error}")))?;
     match pipeline::import_shifted(document, &text, shapes.format, shapes.offset) {
         Ok(imported) => Ok(Ok(imported)),
         Err(PipelineError::Import(error @ ImportError::Nothing(_))) => Ok(Err(failed(&error))),

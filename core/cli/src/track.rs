@@ -50,7 +50,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     }
     let options = TrackOptions { preset, ..TrackOptions::default() };
     let cache = arguments::cached(given).map(Arc::new);
-    let (document, exchanges) = progress::run(given, from, |bar| {
+    let (document, exchanges, contradicted) = progress::run(given, from, |bar| {
         let tracking = match &cache {
             Some(cache) => pipeline::track_with_cache(&mut document, &home, &options, cache, bar),
             None => pipeline::track(&mut document, &home, &options, bar),
@@ -58,8 +58,12 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let tracking = tracking.map_err(|error| Failure::of(error, from))?;
         say_kept(&tracking);
         say_ends(&document.scene, &tracking);
-        Ok((document, tracking.exchanges))
+        let frames = pipeline::frames(&document, &home).map_err(|error| Failure::of(error, from))?;
+        let contradicted = pipeline::contradicted(&document.scene, &frames, bar);
+        let contradicted = contradicted.map_err(|error| Failure::of(error, from))?;
+        Ok((document, tracking.exchanges, contradicted))
     })?;
+    contradicted.iter().for_each(|found| line("note", &format!("part {:?}: {found}", found.part)));
     project::say_gaps(&document, from)?;
     let (report, beyond) = (Report::of(&document.scene, &exchanges), pipeline::beyond(&document.scene));
     project::save(document, from, to)?;

@@ -87,10 +87,8 @@ impl Document {
     pub fn load(path: &Path) -> Result<Self, LoadError> {
         let origin = path.display().to_string();
         let unreadable = |reason: String| LoadError::Unreadable { origin: origin.clone(), reason };
-        let bytes = file::bytes(path).map_err(|error| unreadable(error.to_string()))?;
-        let json = std::str::from_utf8(&bytes)
-            .map_err(|error| unreadable(format!("byte {} is not UTF-8 text", error.valid_up_to())))?;
-        Self::parse(json, &origin)
+        let json = file::text(path).map_err(|error| unreadable(error.to_string()))?;
+        Self::parse(&json, &origin)
     }
 
     /// Reads a document from text; `origin` names it in messages. A document without errors may still have warnings

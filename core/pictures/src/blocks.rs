@@ -29,7 +29,7 @@ pub fn check(file: &mut impl Read) -> Result<(), DecodeError> {
 ///
 /// A header that cannot be read.
 pub fn headers(file: &mut impl Read) -> Result<Headers, DecodeError> {
-    let meta = MetaData::read_from_buffered(file, false).map_err(|e| DecodeError::Unreadable(e.to_string()))?;
+    let meta = MetaData::read_from_buffered(file, false).map_err(|error| DecodeError::unreadable(&error))?;
     Ok(meta.headers)
 }
 

@@ -24,6 +24,24 @@ pub enum DecodeError {
 }
 
 impl DecodeError {
+    /// What a decoder says, in plain words where it says what happened inside of it.
+    pub(crate) fn unreadable(error: &dyn std::fmt::Display) -> Self {
+        let said = error.to_string();
+        let has = |words: &[&str]| words.iter().any(|words| said.contains(words));
+        let plain = if has(&["failed to fill whole buffer", "unexpected end of file", "reference to missing bytes"]) {
+            Some("the file is cut: it ends before the picture does")
+        } else if has(&["exceeds total size", "chunk offset table"]) {
+            Some("the file is not whole: blocks of the picture are missing, as after a render that was stopped")
+        } else if has(&["channel subsampling"]) {
+            Some(
+                "found OpenEXR channels of fewer pixels than the picture, expected all of its size: save it without them",
+            )
+        } else {
+            None
+        };
+        Self::Unreadable(plain.map_or(said, str::to_owned))
+    }
+
     /// A form of TIFF that is not read.
     pub(crate) fn tiff(found: &str, expected: &str) -> Self {
         Self::Unreadable(of_tiff(found, expected))
@@ -34,14 +52,14 @@ impl From<io::Error> for DecodeError {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::Missing,
-            _ => Self::Unreadable(error.to_string()),
+            _ => Self::unreadable(&error),
         }
     }
 }
 
 impl From<ImageError> for DecodeError {
     fn from(error: ImageError) -> Self {
-        Self::Unreadable(unsupported_tiff(&error).unwrap_or_else(|| error.to_string()))
+        unsupported_tiff(&error).map_or_else(|| Self::unreadable(&error), Self::Unreadable)
     }
 }
 

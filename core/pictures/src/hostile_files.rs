@@ -70,6 +70,18 @@ fn a_cut_jpeg_names_the_reason() {
     assert!(error.starts_with("the JPEG file is cut: its "), "{error}");
 }
 
+#[test]
+fn other_cut_files_say_so_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frame");
+    for format in [ImageFormat::Bmp, ImageFormat::OpenExr] {
+        let whole = drawing(format);
+        std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        let error = decoded(&path).unwrap_err().to_string();
+        assert!(error.starts_with("the file is "), "{format:?}: {error}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_refused_at_once() {

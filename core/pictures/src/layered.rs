@@ -49,7 +49,7 @@ impl<R: BufRead + Seek> Layered<R> {
     ///
     /// Headers that cannot be read, and channels of which none is a picture.
     pub fn new(file: R) -> Result<Self, DecodeError> {
-        let reader = exr::block::read(file, false).map_err(|error| DecodeError::Unreadable(error.to_string()))?;
+        let reader = exr::block::read(file, false).map_err(|error| DecodeError::unreadable(&error))?;
         let names = |header: &Header| -> Vec<String> {
             header.channels.list.iter().map(|channel| channel.name.to_string()).collect()
         };

@@ -3,7 +3,7 @@
 //!
 //! The tag `ExtraSamples` says it: 1 is alpha that the colours are multiplied by, 2 is alpha that they are not. Programs that composite write 1, as
 //! OpenImageIO does without being asked; painting programs write 2. With any other value the fourth channel
-//! is not alpha, and the decoder leaves it out.
+//! is not alpha, and the decoder leaves it out. Without the tag a fourth channel is alpha that the colours are not multiplied by.
 //!
 //! The decoder takes all numbers of 32 bits for floats, whatever `SampleFormat` says.
 

@@ -3,7 +3,7 @@
 use super::report::runs;
 use super::reshape::depths::contradiction;
 use super::tween::{peg_of, spacing};
-use super::{PipelineError, changed, gaps, outside};
+use super::{PipelineError, changed, contradicted, gaps, outside};
 use crate::pictures::Sequence;
 use crate::project::drawings::{Drawings, DrawnPeg, WrittenTiming, drawing_place, peg_key_place, peg_place};
 use crate::project::seen::Made;
@@ -59,6 +59,9 @@ pub fn check(document: &Document, folder: &Path, progress: &dyn Progress) -> Res
         unreadable.extend(batch.iter().zip(errors).filter_map(|(&frame, error)| Some((frame, error?))));
         done += batch.len();
         progress.report("Reading frames", done as f64 / numbers.len() as f64)?;
+    }
+    for found in contradicted(&document.scene, &sequence, progress)? {
+        problems.warning(format!("part {:?} keys.\"{}\"", found.part, found.keys[1]), found.to_string());
     }
     gaps::lines(&unreadable).into_iter().for_each(|line| problems.error("footage", line));
     match changed(document, folder, &Made::ALL, None) {

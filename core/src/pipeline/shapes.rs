@@ -3,14 +3,11 @@
 use super::imported::Imported;
 use super::{PipelineError, excerpt};
 use crate::export;
-use crate::file;
 use crate::import::svg::Still;
 use crate::import::{self, ImportError, Shapes};
 use crate::project::Document;
 use crate::scene::{Footage, FrameNumber, Scene};
 use std::collections::BTreeMap;
-use std::io;
-use std::path::Path;
 
 /// A format of a file with shapes. Shapes without animation get their key on the frame `still`, a frame of the footage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,23 +73,6 @@ impl ShapeFormat {
             Self::Fusion { still } => Self::Fusion { still: moved(still) },
         }
     }
-}
-
-/// The text of a file of shapes. A file in another encoding than UTF-8 is refused, and the error says which, if the file does.
-///
-/// # Errors
-///
-/// As for [`file::text`].
-pub fn shapes_text(path: &Path) -> io::Result<String> {
-    file::text(path).map_err(|error| {
-        let bytes = if error.kind() == io::ErrorKind::InvalidData { file::bytes(path).ok() } else { None };
-        match bytes.and_then(|bytes| import::foreign_encoding(&bytes)) {
-            Some(encoding) => {
-                io::Error::new(error.kind(), format!("found a text in {encoding}, expected UTF-8: save it as UTF-8"))
-            }
-            None => error,
-        }
-    })
 }
 
 /// Puts the shapes in the text of a file into the document as keys of parts. The frames of the file are those of the document plus

@@ -14,6 +14,7 @@ use openfx::sys::generic::core::{
 };
 use openfx::sys::image_effect_v1::image_effect::kOfxTypeClip;
 use openfx::sys::image_effect_v1::param::kOfxTypeParameter;
+use rototoon::file;
 use rototoon::pipeline::unchanged::Mark;
 use rototoon::pipeline::{self, ShapeFormat};
 use rototoon::project::Document;
@@ -166,7 +167,7 @@ fn import(effect: &Effect, path: &Path, extension: &str, time: f64) -> Result<()
     let offset = effect.parameters()?.int(c"frameOffset", 0.0)?;
     let format = ShapeFormat::of(extension, document.scene.footage.first);
     let format = format.ok_or_else(|| told(&"expected a file of shapes"))?;
-    let text = pipeline::shapes_text(path).map_err(|error| told(&error))?;
+    let text = file::text(path).map_err(|error| told(&error))?;
     let imported = pipeline::import_shifted(&mut document, &text, format, offset).map_err(|error| told(&error))?;
     let hidden = edits::hidden_new(effect, &document)?;
     edits::store_imported(effect, document, &path.to_string_lossy())?;

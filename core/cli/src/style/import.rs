@@ -98,7 +98,7 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
         let made = seen(&text, &options).map_err(|error| match error {
             // What the file does not have is asked for by an option.
             MotionError::Frames { .. } | MotionError::Rate { .. } => {
-                Failure::Use(format!("{}: {}", file.display(), as_option(&error)))
+                Failure::Use(format!("{}: {}", file.display(), as_option(&error, options.fps.is_some())))
             }
             other => failed(&other),
         })?;
@@ -121,12 +121,15 @@ pub fn run(given: &ArgMatches) -> Result<(), Failure> {
     Ok(Clips { clips, fps: options.fps.unwrap_or(1.0) }.save(to)?)
 }
 
-/// An error that begins with what was asked for, with the option's name in its place.
-fn as_option(error: &MotionError) -> String {
+/// An error that begins with what was asked for, with the option's name in its place. `rated` says whether a rate was given, or the file's own one counts.
+fn as_option(error: &MotionError, rated: bool) -> String {
     let text = error.to_string();
     let reason = text.split_once(": ").map_or(text.as_str(), |(_, reason)| reason);
-    let option = if matches!(error, MotionError::Rate { .. }) { "fps" } else { "frames" };
-    format!("--{option}: {reason}")
+    match error {
+        MotionError::Rate { .. } if rated => format!("--fps: {reason}"),
+        MotionError::Rate { .. } => format!("Frame Time, as frames a second: {reason}; --fps gives another rate"),
+        _ => format!("--frames: {reason}"),
+    }
 }
 
 fn options(given: &ArgMatches) -> Result<Options, Failure> {
@@ -158,7 +161,12 @@ fn options(given: &ArgMatches) -> Result<Options, Failure> {
 /// The names of the character and of the motion of a file.
 fn labels(given: &ArgMatches, file: &Path) -> Result<(String, String), Failure> {
     let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-    let folder = whole.parent().and_then(Path::file_name);
+    let folder = whole.parent().map(|parent| match parent.file_name() {
+        Some(_) => parent.to_owned(),
+        // The path ends in "..", whose folder has a name all the same.
+        None => parent.canonicalize().unwrap_or_else(|_| parent.to_owned()),
+    });
+    let folder = folder.as_deref().and_then(Path::file_name);
     let label = |id: &str, own: Option<&std::ffi::OsStr>| {
         let own = || own.map(|name| name.to_string_lossy().into_owned());
         match given.get_one::<String>(id).cloned().or_else(own) {

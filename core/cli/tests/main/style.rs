@@ -379,6 +379,15 @@ fn motion_capture_becomes_clips() {
     let pelvis = folder.path().join("pelvis.json");
     std::fs::write(&pelvis, r#"{"pelvis": "Hips of Hr. M\ufffdller"}"#).unwrap();
     assert_eq!(import(&[&path("anna/old.bvh"), "--joints", pelvis.to_str().unwrap()]), (Some(0), String::new()));
+    // The folder of a path that goes up has a name too.
+    std::fs::create_dir(folder.path().join("anna/sub")).unwrap();
+    assert_eq!(import(&[&path("anna/sub/../lift.bvh")]), (Some(0), String::new()));
+    assert!(std::fs::read_to_string(path("clips.json")).unwrap().contains("\"anna\""));
+    let fast = captured("LeftHand");
+    let time = fast.lines().find(|line| line.starts_with("Frame Time")).unwrap();
+    std::fs::write(folder.path().join("anna/fast.bvh"), fast.replace(time, "Frame Time: 1e-300")).unwrap();
+    let (status, said) = import(&[&path("anna/fast.bvh")]);
+    assert!(status == Some(2) && said.contains("fast.bvh: Frame Time, as frames a second: found 9.99"), "{said}");
     assert_eq!(import(&[&lift]), (Some(0), String::new()));
     let clips: Value = serde_json::from_str(&std::fs::read_to_string(path("clips.json")).unwrap()).unwrap();
     assert_eq!((&clips["clips"][0]["character"], &clips["clips"][0]["motion"]), (&json!("anna"), &json!("lift")));

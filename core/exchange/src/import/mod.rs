@@ -22,7 +22,6 @@
 //! - [`path`](mod@path): Bézier paths as contours with one number of points
 //! - [`problem`]: errors of a file, with their places
 //! - `channel`: numbers that may be animated
-//! - `encoding`: files that are not UTF-8
 //! - `extent`: of which frames a file speaks
 //! - `hidden`: frames on which a shape is not shown
 //! - `merge`: shapes into a scene, without a change where nothing was changed
@@ -34,7 +33,6 @@
 
 pub mod bvh;
 mod channel;
-mod encoding;
 mod extent;
 pub mod fusion;
 mod hidden;
@@ -66,7 +64,6 @@ mod svg_transform;
 mod svg_view;
 mod way;
 
-pub use encoding::foreign_encoding;
 pub use extent::Extent;
 pub use limits::too_large;
 pub use merge::{Change, Merged, Taken, into_scene};

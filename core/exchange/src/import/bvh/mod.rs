@@ -85,7 +85,7 @@ pub enum MotionError {
         count: usize,
     },
     /// The requested frame rate is impossible.
-    #[error("frames a second: found {found}, expected {SLOWEST} to {FASTEST}, and at most {MOST_FRAMES} frames")]
+    #[error("frames a second: found {}, expected {SLOWEST} to {FASTEST}, and at most {MOST_FRAMES} frames", plain(*found))]
     Rate {
         /// The requested frame rate.
         found: f64,
@@ -155,6 +155,11 @@ fn frames(bvh: &Bvh, options: &Options) -> Result<RangeInclusive<usize>, MotionE
     let frames = options.frames.clone().unwrap_or(0..=count - 1);
     let (first, last) = (*frames.start(), *frames.end());
     if first <= last && last < count { Ok(frames) } else { Err(MotionError::Frames { first, last, count }) }
+}
+
+/// A number without hundreds of digits.
+fn plain(number: f64) -> String {
+    if (1e-6..1e12).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 /// The median length of the torso in space.

@@ -292,6 +292,8 @@ fn what_cannot_be_seen_is_told() {
     for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9, 0.0004] {
         assert!(error(&text, &Options { fps: Some(fps), ..Options::default() }).starts_with("frames a second: found"));
     }
+    let rate = error(&text, &Options { fps: Some(1e300), ..Options::default() });
+    assert!(rate.starts_with("frames a second: found 1e300, expected"), "{rate}");
     let point = file(&USUAL, &[[0.0; 3]; COUNT], &frames);
     assert!(error(&point, &Options::default()).starts_with("torso (pelvis to chest to neck): found length 0"));
     let far = text.replace("OFFSET 0 2 0", "OFFSET 0 1e308 0");

@@ -381,7 +381,9 @@ fn lost(mask: &Mask) -> Option<String> {
         .and_then(Value::number)
         .is_some_and(|level| level < 0.0)
         .then(|| "takes its area away".to_owned());
-    let told: Vec<String> = inverted.then(|| "is inverted".to_owned()).into_iter().chain(mode).chain(taken).collect();
+    let off = mask.value.get("PassThrough").is_some_and(Value::is_true).then(|| "is switched off".to_owned());
+    let inverted = inverted.then(|| "is inverted".to_owned());
+    let told: Vec<String> = inverted.into_iter().chain(mode).chain(taken).chain(off).collect();
     (!told.is_empty()).then(|| told.join(" and "))
 }
 

@@ -123,11 +123,38 @@ impl<'a> Reader<'a> {
             if byte.is_ascii_whitespace() {
                 self.at += 1;
             } else if self.text[self.at..].starts_with("--") {
-                self.at = self.text[self.at..].find('\n').map_or(self.text.len(), |end| self.at + end);
+                let end = match self.opens_long(self.at + 2) {
+                    Some([begin, level]) => self.end_of_long(begin, level).map(|end| end + level + 2),
+                    None => self.text[self.at..].find('\n').map(|end| self.at + end),
+                };
+                self.at = end.unwrap_or(self.text.len());
             } else {
                 return;
             }
         }
+    }
+
+    /// Where a text in long brackets, `[[…]]` or `[=[…]=]`, has its first letter if one begins at a byte, and the number of its signs.
+    fn opens_long(&self, start: usize) -> Option<[usize; 2]> {
+        let inner = self.text.get(start..)?.strip_prefix('[')?;
+        let level = inner.bytes().take_while(|byte| *byte == b'=').count();
+        inner[level..].starts_with('[').then_some([start + level + 2, level])
+    }
+
+    /// The byte after the last letter of such a text.
+    fn end_of_long(&self, begin: usize, level: usize) -> Option<usize> {
+        Some(begin + self.text[begin..].find(&format!("]{}]", "=".repeat(level)))?)
+    }
+
+    fn long(&mut self) -> Result<&'a str, ImportError> {
+        let start = self.at;
+        let found =
+            self.opens_long(start).and_then(|[begin, level]| Some([begin, self.end_of_long(begin, level)?, level]));
+        let Some([begin, end, level]) = found else {
+            return Err(self.wrong(start, "found a text without its end, expected closing brackets"));
+        };
+        self.at = end + level + 2;
+        Ok(&self.text[begin..end])
     }
 
     /// Goes past a sign if it is next.
@@ -148,7 +175,8 @@ impl<'a> Reader<'a> {
         let kind = match self.peek() {
             Some(b'{') => self.table("", depth)?,
             Some(quote @ (b'"' | b'\'')) => Kind::Text(self.quoted(quote)?),
-            Some(byte) if byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.') => Kind::Number(self.number()?),
+            Some(b'[') if self.opens_long(start).is_some() => Kind::Text(self.long()?),
+            Some(byte) if byte.is_ascii_digit() || matches!(byte, b'-' | b'+' | b'.') => self.numeric()?,
             Some(byte) if byte.is_ascii_alphabetic() || byte == b'_' => match self.identifier() {
                 "true" => Kind::Truth(true),
                 "false" => Kind::Truth(false),
@@ -190,13 +218,30 @@ impl<'a> Reader<'a> {
     }
 
     fn number(&mut self) -> Result<f64, ImportError> {
+        let start = self.at;
+        match self.numeric()? {
+            Kind::Number(number) => Ok(number),
+            _ => Err(self.wrong(start, format!("found {:.40?}, expected a number", &self.text[start..self.at]))),
+        }
+    }
+
+    /// A number. One that is not finite, such as `-1.#IND`, is a text: it may be of an input that nobody reads.
+    fn numeric(&mut self) -> Result<Kind<'a>, ImportError> {
         let (start, rest) = (self.at, &self.text[self.at..]);
-        let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+');
+        let is_part = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+' | '#');
         let end = rest.find(|c: char| !is_part(c)).unwrap_or(rest.len());
+        let word = &rest[..end];
         self.at += end;
-        match rest[..end].parse::<f64>() {
-            Ok(number) if number.is_finite() => Ok(number),
-            _ => Err(self.wrong(start, format!("found {:.40?}, expected a number", &rest[..end]))),
+        let (sign, plain) = word.strip_prefix('-').map_or((1.0, word), |plain| (-1.0, plain));
+        let digits = plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X"));
+        if let Some(number) = digits.and_then(|digits| u64::from_str_radix(digits, 16).ok()) {
+            return Ok(Kind::Number(sign * number as f64));
+        }
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(Kind::Number(number)),
+            Ok(number) if number.is_nan() => Ok(Kind::Text(word)),
+            _ if plain.contains(".#") => Ok(Kind::Text(word)),
+            _ => Err(self.wrong(start, format!("found {word:.40?}, expected a number"))),
         }
     }
 
@@ -239,6 +284,9 @@ impl<'a> Reader<'a> {
     fn name(&mut self) -> Result<Name<'a>, ImportError> {
         self.skip();
         let start = self.at;
+        if self.opens_long(start).is_some() {
+            return Ok(Name::None);
+        }
         if self.takes(b'[') {
             self.skip();
             let name = match self.peek() {
@@ -301,5 +349,21 @@ mod tests {
         }
         let deep = "{".repeat(1_000_000);
         assert!(value(&deep).unwrap_err().to_string().contains("nested deeper than 256"));
+    }
+
+    #[test]
+    fn long_texts_comments_and_other_numbers_are_read() {
+        let text = "{ --[[ a { comment\n\" ]] a = [[ x } \" ]], --[==[ ]] ]==] b = { [=[ ]] ]=], 7 }, c = -0x1F, d = -1.#IND, [2] = 3 -- }\n }";
+        let found = value(text).unwrap();
+        assert_eq!(found.get("a").and_then(Value::text), Some(" x } \" "));
+        let listed: Vec<_> = found.get("b").unwrap().listed().map(|value| (value.text(), value.number())).collect();
+        assert_eq!(listed, [(Some(" ]] "), None), (None, Some(7.0))]);
+        assert_eq!(found.get("c").and_then(Value::number), Some(-31.0));
+        let odd = found.get("d").unwrap();
+        assert_eq!((odd.text(), odd.number()), (Some("-1.#IND"), None));
+        assert_eq!(found.fields().last().unwrap().0, Name::Number(2.0));
+        for wrong in ["{ a = [[ x }", "{ a = 0xZ }", "{ [1.#IND] = 2 }", "{ --[[ a = 1 }"] {
+            assert!(value(wrong).is_err(), "{wrong}");
+        }
     }
 }

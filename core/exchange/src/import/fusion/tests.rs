@@ -152,3 +152,13 @@ fn files_without_shapes_and_wrong_points_are_refused() {
         error(&late)
     );
 }
+
+#[test]
+fn a_mask_that_is_switched_off_is_told() {
+    let input = format!("Polyline = Input {{ Value = {SQUARE}, }},");
+    let text = setting(&[("PolylineMask", "box", &input)], "").replace("{ Inputs =", "{ PassThrough = true, Inputs =");
+    let found = read(&text).unwrap();
+    assert_eq!(found.shapes.len(), 1);
+    let said = "the shape \"box\" is switched off; it comes in as it is drawn";
+    assert!(found.warnings[0].contains(said), "{:?}", found.warnings);
+}

@@ -52,3 +52,9 @@ pub(super) fn outside_of_lifetime(text: &str, item: &Item) -> Vec<[f64; 2]> {
     let before = first.map(|first| [f64::NEG_INFINITY, first - 1.0]);
     before.into_iter().chain(last.map(|last| [last + 1.0, f64::INFINITY])).collect()
 }
+
+/// Whether the knobs of a node say that it is disabled on all frames.
+pub(super) fn is_disabled(knobs: &Item) -> bool {
+    let value = knobs.items().windows(2).find(|pair| pair[0].word() == Some("disable")).and_then(|pair| pair[1].word());
+    value.is_some_and(|value| ["true", "1"].contains(&value))
+}

@@ -67,8 +67,15 @@ pub fn nuke(text: &str, footage: &Footage, still: FrameNumber) -> Result<Shapes,
         found: Shapes::default(),
         reach: Reach::new(),
     };
-    for item in &items {
+    for (k, item) in items.iter().enumerate() {
+        let before = reader.found.shapes.len();
         reader.walk(item, &mut Vec::new())?;
+        let is_off = attributes::is_disabled(item) && reader.found.shapes.len() > before;
+        if let (true, Some(node)) = (is_off, k.checked_sub(1).and_then(|k| items[k].word())) {
+            let place = place(text, item.start);
+            let warning = format!("{place}: the node {node} is disabled; its shapes come in as they are drawn");
+            reader.found.warnings.push(warning);
+        }
     }
     if !reader.found.shapes.is_empty() {
         reader.found.warnings.extend(told);

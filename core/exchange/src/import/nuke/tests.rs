@@ -318,3 +318,17 @@ fn shapes_beside_labels_and_python_are_all_read() {
         assert_eq!(names, ["second", "first"], "{text}");
     }
 }
+
+#[test]
+fn a_node_that_is_disabled_is_told() {
+    let points = "{p {0 0} {10 0} {0 0} {0 0} {50 0} {0 0} {0 0} {50 90} {0 0}}";
+    let read = |value: &str| {
+        let node = script("bezier", points, "").replace(" name Roto1", &format!(" disable {value}\n name Roto1"));
+        nuke(&node, &footage(), 1).unwrap()
+    };
+    let found = read("true");
+    assert_eq!((found.shapes.len(), found.warnings.len()), (1, 1));
+    let said = "the node Roto is disabled; its shapes come in as they are drawn";
+    assert!(found.warnings[0].contains(said), "{:?}", found.warnings);
+    assert_eq!(read("false").warnings, [""; 0]);
+}

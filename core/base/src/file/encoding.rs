@@ -1,10 +1,12 @@
 //! Which encoding a file has that is not UTF-8, so that a message can say how to save it.
 
 /// The encoding that a file names at its beginning, by a mark or in the header of XML; `None` if it names none, or UTF-8.
-pub fn foreign_encoding(bytes: &[u8]) -> Option<String> {
+pub(super) fn foreign_encoding(bytes: &[u8]) -> Option<String> {
     const HEADER: usize = 200;
     match bytes {
-        [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] | [b'<', 0, ..] | [0, b'<', ..] => return Some("UTF-16".to_owned()),
+        [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => return Some("UTF-16".to_owned()),
+        // XML and JSON without a mark.
+        [b'<' | b'{' | b'[', 0, ..] | [0, b'<' | b'{' | b'[', ..] => return Some("UTF-16".to_owned()),
         _ => {}
     }
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEADER)]);
@@ -28,7 +30,7 @@ mod tests {
             Some("ISO-8859-1")
         );
         assert_eq!(named(b"<?xml version='1.0' encoding = 'windows-1252' ?>").as_deref(), Some("windows-1252"));
-        for utf16 in [&[0xFF, 0xFE, b'<', 0][..], &[0xFE, 0xFF, 0, b'<'], b"<\0?\0", b"\0<\0?"] {
+        for utf16 in [&[0xFF, 0xFE, b'<', 0][..], &[0xFE, 0xFF, 0, b'<'], b"<\0?\0", b"\0<\0?", b"{\0\"\0", b"\0["] {
             assert_eq!(named(utf16).as_deref(), Some("UTF-16"));
         }
         for none in [
