@@ -303,10 +303,14 @@ mod tests {
         #[test]
         fn meetings_are_those_of_the_chords(one in any_piece(), two in any_piece()) {
             let found = one.intersect(&two);
+            // Pieces that bend by less than a share of their size count as straight.
+            let ends = [one, two].map(|piece| piece.control_box());
+            let size = (ends[0].1.max(ends[1].1) - ends[0].0.min(ends[1].0)).max_element();
+            let most = 1e-7 + STRAIGHT * size;
             for meeting in &found {
                 if let Meeting::Point { first, second } = *meeting {
                     prop_assert!((0.0..=1.0).contains(&first) && (0.0..=1.0).contains(&second));
-                    prop_assert!(one.point(first).distance(two.point(second)) < 1e-7);
+                    prop_assert!(one.point(first).distance(two.point(second)) < most);
                 }
             }
             // Chords are slightly off: for pairs that nearly touch, the count may differ by a pair of crossings, or by
