@@ -25,6 +25,8 @@ def blank(ob, frame, duration):
     bpy.context.scene.frame_set(frame)
     bpy.ops.grease_pencil.insert_blank_frame(all_layers=True, duration=duration)
     bpy.ops.object.mode_set(mode="OBJECT")
+    if duration and bpy.app.version >= (5, 3, 0):
+        pytest.skip("Insert Blank Keyframe of Blender 5.3 says of its duration that it has no effect")
 
 
 @pytest.fixture
