@@ -15,7 +15,7 @@
 //!
 //! What moves reach depends on which part moves first. So all moves are made twice from the same start, from the nearest part to
 //! the farthest and the other way round, and the paths of less energy are taken. The contenders come in an order of their own
-//! ([`Contender::order`]), so the order in which a document lists its parts changes nothing.
+//! ([`Contender::order`]), so the choice does not depend on the order in which a document lists its parts.
 //!
 //! Limits: the result is a local minimum with respect to these moves. Parts that are keyed on different frames move
 //! singly only.
