@@ -7,7 +7,8 @@ use std::collections::BTreeMap;
 
 const NAMES: [&str; 6] = ["far hind leg", "near hind leg", "far fore leg", "near fore leg", "body", "tail"];
 
-/// An animal whose four legs look alike and swing past each other.
+/// An animal whose four legs look alike and swing past each other, some of them unevenly. Where parts are chosen in the order of the list, the second of the
+/// orders below gives other tracks.
 fn animal() -> Drawn {
     let leg = |motion: fn(f64) -> (Point, f64)| Shape {
         rest: points(&[(-6.0, -6.0), (6.0, -6.0), (6.0, 30.0), (5.0, 60.0), (-5.0, 60.0), (-6.0, 30.0)]),
@@ -25,10 +26,10 @@ fn animal() -> Drawn {
         motion: |t| (Point::new(176.0 + t, 64.0), -70.0 + 20.0 * t),
     };
     Drawn(vec![
-        leg(|t| (Point::new(152.0 + t, 84.0), 45.0 - 15.0 * t)),
-        leg(|t| (Point::new(164.0 + t, 84.0), -45.0 + 15.0 * t)),
+        leg(|t| (Point::new(152.0 + t, 84.0), 45.0 - 15.0 * t - 2.4 * t * (6.0 - t))),
+        leg(|t| (Point::new(164.0 + t, 84.0), -45.0 + 15.0 * t + 3.6 * t * (6.0 - t))),
         leg(|t| (Point::new(76.0 + t, 84.0), -40.0 + 14.0 * t)),
-        leg(|t| (Point::new(88.0 + t, 84.0), 40.0 - 14.0 * t)),
+        leg(|t| (Point::new(88.0 + t, 84.0), 40.0 - 14.0 * t - 4.2 * t * (6.0 - t))),
         body,
         tail,
     ])
