@@ -1,6 +1,6 @@
 """How a large drawing works in Blender: 200 frames x 300 strokes x 100 points, tracked.
 
-    target/venv-bpy-5.2.3/bin/python tests/blender/bench_large.py [FRAMES STROKES POINTS] [--check]
+    target/venv-bpy-5.3.0/bin/python tests/blender/bench_large.py [FRAMES STROKES POINTS] [--check]
 
 Measures processor time of the main thread, in background, without the tracker's own (a stand-in blends the keys):
 

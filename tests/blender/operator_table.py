@@ -14,6 +14,8 @@ Each operator is `bpy.ops.rototoon.NAME`. [Background Blender](../scripts/blende
 """
 WINDOW = {"filter_folder", "rna_type", "filter_glob", "check_existing"}
 """Properties that only the file browser uses."""
+BLENDERS_NAME = "Unique name used in the code and scripting"
+"""Blender's own description of the name that it gives every group of settings. It says more in some versions."""
 KINDS = {"COLLECTION": "list", "POINTER": "data-block"}
 RANGE = 1e6
 """Limits beyond this are none: Blender's own are the largest numbers of the type."""
@@ -27,14 +29,18 @@ def page() -> str:
 def settings() -> str:
     """The settings of an object: the properties of `object.rototoon`."""
     rna = bpy.types.Object.bl_rna.properties["rototoon"].fixed_type
-    own = [prop for prop in rna.properties if prop.identifier not in ("rna_type", "name") and prop.description]
+    own = [prop for prop in rna.properties if is_own(prop)]
     text = "\n## Settings of an object\n\nThey are the properties of `object.rototoon`.\n" + table(own)
-    blenders = {prop.as_pointer() for prop in bpy.types.PropertyGroup.bl_rna.properties}
     for prop in own:
         if prop.type == "COLLECTION":
-            items = [each for each in prop.fixed_type.properties if each.as_pointer() not in blenders and each.description]
+            items = [each for each in prop.fixed_type.properties if is_own(each)]
             text += f"\nAn item of `object.rototoon.{prop.identifier}` has these:\n" + table(items)
     return text
+
+
+def is_own(prop) -> bool:
+    """Whether a described property is not Blender's own."""
+    return prop.identifier != "rna_type" and bool(prop.description) and not prop.description.startswith(BLENDERS_NAME)
 
 
 def table(props) -> str:

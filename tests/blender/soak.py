@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Works in background Blender for a long time, as an artist would: random edits, tracks, undos, saves and reopens.
 
-    ROTOTOON_ZIP=target/rototoon-VERSION-linux_x64.zip target/venv-bpy-5.2.3/bin/python tests/blender/soak.py --minutes 120
+    ROTOTOON_ZIP=target/rototoon-VERSION-linux_x64.zip target/venv-bpy-5.3.0/bin/python tests/blender/soak.py --minutes 120
 
 It fails where
 

@@ -15,7 +15,7 @@ from conftest import ROOT
 from live_stage import settle
 from mathutils import Matrix, Vector
 
-VERSIONS = ["4.5.15", "5.0.1", "5.2.3"]
+VERSIONS = ["4.5.15", "5.2.3", "5.3.0"]
 
 
 def truth():

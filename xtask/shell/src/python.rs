@@ -13,11 +13,11 @@ pub struct Wheel {
     pub python: &'static str,
 }
 
-/// The Blender versions that are tested, the oldest first.
+/// The Blender versions that are tested, the oldest first: those with long support, and the newest one.
 pub const WHEELS: [Wheel; 3] = [
     Wheel { blender: "4.5.15", python: "3.11" },
-    Wheel { blender: "5.0.1", python: "3.11" },
     Wheel { blender: "5.2.3", python: "3.13" },
+    Wheel { blender: "5.3.0", python: "3.13" },
 ];
 
 /// An interpreter of a version such as "3.11": the first one that runs.
