@@ -257,6 +257,15 @@ class ROTOTOON_PT_tween(DrawingPanel, bpy.types.Panel):
         layout.operator("rototoon.clear_in_betweens", icon="TRASH")
 
 
+def pencil(layout, settings, heading: str, chosen: str, colour: str) -> None:
+    """A pencil that counts if it is chosen, and its colour. Blender cuts the heading of a row to a few letters, and leaves that of a column whole."""
+    row = layout.column(heading=heading).row(align=True)
+    row.prop(settings, chosen, text="")
+    part = row.row(align=True)
+    part.active = getattr(settings, chosen)
+    part.prop(settings, colour, text="")
+
+
 class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
     bl_idname = "ROTOTOON_PT_lines"
     bl_label = "Lines"
@@ -271,11 +280,7 @@ class ROTOTOON_PT_lines(DrawingPanel, bpy.types.Panel):
         column.prop(settings, "line_style")
         column.prop(settings, "line_sensitivity")
         for heading, chosen, colour in (("Leave Out", "line_leave_out", "line_left_out"), ("Paint Only", "line_paint_only", "line_border")):
-            row = column.row(heading=heading, align=True)
-            row.prop(settings, chosen, text="")
-            part = row.row(align=True)
-            part.active = getattr(settings, chosen)
-            part.prop(settings, colour, text="")
+            pencil(column, settings, heading, chosen, colour)
         column.prop(settings, "lines_layer", text="Layer")
         row = layout.row(align=True)
         row.scale_y = 1.5
