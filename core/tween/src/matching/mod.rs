@@ -46,6 +46,7 @@ mod similarity;
 mod squash;
 mod standing;
 mod start;
+mod torn;
 mod turns;
 mod twins;
 mod unchanged;
