@@ -65,12 +65,15 @@ pub fn bend_at(keys: &[(i32, Bend)], frame: i32) -> Bend {
     }
 }
 
-/// Indices of the vertices nearest to `count` samples of a spline (eq. 11). The samples are evenly spaced in λ between
-/// the ends. Each vertex appears once.
+/// `count` samples of a spline, evenly spaced in λ between the ends.
+pub fn samples(spline: &Quadratic, count: usize) -> impl Iterator<Item = Point> {
+    (1..=count).map(move |sample| spline.point(sample as f64 / (count + 1) as f64))
+}
+
+/// Indices of the vertices nearest to `count` [`samples`] of a spline (eq. 11). Each vertex appears once.
 pub fn sub_keys(spline: &Quadratic, vertices: &[Point], count: usize) -> Vec<usize> {
     let mut found = Vec::new();
-    for sample in 1..=count {
-        let on = spline.point(sample as f64 / (count + 1) as f64);
+    for on in samples(spline, count) {
         let nearest =
             (0..vertices.len()).min_by(|&a, &b| vertices[a].distance(on).total_cmp(&vertices[b].distance(on)));
         found.extend(nearest.filter(|vertex| !found.contains(vertex)));

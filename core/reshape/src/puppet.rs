@@ -1,10 +1,11 @@
 //! A drawn part that follows the limbs that carry it (Liang et al. 2012, section 5).
 //!
-//! A part is triangulated from its outline ([`super::triangulate`]). Mesh vertices near the key points of its limbs
-//! become handles, and so do vertices near samples of the limbs' splines (sub-key points, eq. 11). Each handle belongs
+//! A part is triangulated from its outline ([`super::triangulate`]), with vertices at the key points of its limbs and at
+//! samples of the limbs' splines (sub-key points, eq. 11). They become handles; where a place is too near the outline or
+//! another one, the nearest vertex does. Each handle belongs
 //! to a point of the spline at rest. On a frame this point moves to the same parameter of the new spline; the offset
-//! from it to the vertex rotates with the spline. The mesh follows as rigidly as possible ([`super::arap`]), and every
-//! point bound to the mesh follows it.
+//! from it to the vertex rotates with the spline. At a joint a vertex follows both limbs. The mesh follows as rigidly as
+//! possible ([`super::arap`]), and every point bound to the mesh follows it.
 //!
 //! The paper moves sub-key points from frame to frame, with both key points and then to the nearest point of the new
 //! spline (eqs. 12 to 14, [`follow`]). As it says itself, errors then accumulate. Here each frame starts from the
@@ -27,8 +28,8 @@
 //! Limits: limbs and parts are planar. A part that turns out of the picture's plane needs a new drawing.
 
 use super::arap::{ArapError, Mesh, Solver};
-use super::limb::{Bend, follow, sub_keys};
-use super::triangulate::{Held, Triangles, TriangulateError, triangulate};
+use super::limb::{Bend, follow, samples, sub_keys};
+use super::triangulate::{Held, Triangles, TriangulateError, triangulate_with};
 use rototoon_base::curve::quadratic::Quadratic;
 use rototoon_base::geometry::{Point, polygon};
 
@@ -110,7 +111,7 @@ enum Drive {
     /// Keeps its shape and size, and stays at the start of its first limb.
     Whole { limbs: Vec<usize>, turn: f64, points: Vec<Point> },
     /// Bends with its limbs.
-    Mesh { solver: Box<Solver>, handles: Vec<Handle>, held: Vec<Held> },
+    Mesh { solver: Box<Solver>, handles: Vec<Vec<Handle>>, held: Vec<Held> },
 }
 
 /// A part that can be posed repeatedly.
@@ -173,8 +174,9 @@ impl Puppet {
                 Ok(points.iter().map(|p| to + turn.rotate(*p - from)).collect())
             }
             Drive::Mesh { solver, handles, held } => {
-                let places: Vec<Point> =
-                    handles.iter().map(|h| target(h, &self.rest[h.limb], &limbs[h.limb], self.printed)).collect();
+                let place = |h: &Handle| target(h, &self.rest[h.limb], &limbs[h.limb], self.printed);
+                let mean = |on: &Vec<Handle>| on.iter().map(place).sum::<Point>() / on.len() as f64;
+                let places: Vec<Point> = handles.iter().map(mean).collect();
                 let vertices = solver.solve(&places)?;
                 Ok(held.iter().map(|h| h.at(&vertices)).collect())
             }
@@ -233,7 +235,8 @@ fn mesh(
     options: &Options,
 ) -> Result<Option<Drive>, PuppetError> {
     let edge = (polygon::signed_area(outline).abs().sqrt() / EDGES).max(1e-9);
-    let whole = triangulate(&[outline.to_vec()], &[], edge)?;
+    let inner = on_limbs(rest, carriers, options.sub_keys);
+    let whole = triangulate_with(&[outline.to_vec()], &[], &inner, edge)?;
     // A piece joined to the rest by one vertex could rotate freely about it. Therefore only one piece, the largest with
     // enough handles, is posed. It carries all points.
     let posed = whole.pieces().into_iter().find_map(|piece| {
@@ -260,15 +263,29 @@ fn mesh(
     }
 }
 
-/// Vertices that follow limbs, each once. A point farther than an edge from the nearest vertex gets no handle.
+/// Places of limbs on which the mesh gets vertices: the ends first, then the samples between them. A vertex beside the limb would turn about
+/// it, and where it lies is chance. They are in the order of their places, so that the order of the limbs changes nothing.
+fn on_limbs(rest: &[LimbPose], carriers: &[Carrier], count: usize) -> Vec<Point> {
+    let splines = || carriers.iter().map(|carrier| rest[carrier.limb].spline());
+    let ends = splines().flat_map(|spline| [spline.p0, spline.p2]);
+    let between = splines().flat_map(|spline| samples(&spline, count).collect::<Vec<_>>());
+    let in_order = |mut places: Vec<Point>| {
+        places.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+        places
+    };
+    [in_order(ends.collect()), in_order(between.collect())].concat()
+}
+
+/// Vertices that follow limbs, each once, with the limbs that they follow. A point farther than an edge from the nearest vertex gets no
+/// handle. At a joint two limbs take the same vertex: it follows both, whichever limb comes first.
 fn handles(
     shape: &Triangles,
     edge: f64,
     rest: &[LimbPose],
     carriers: &[Carrier],
     options: &Options,
-) -> (Vec<usize>, Vec<Handle>) {
-    let (mut vertices, mut found): (Vec<usize>, Vec<Handle>) = (Vec::new(), Vec::new());
+) -> (Vec<usize>, Vec<Vec<Handle>>) {
+    let (mut vertices, mut found): (Vec<usize>, Vec<Vec<Handle>>) = (Vec::new(), Vec::new());
     for carrier in carriers {
         let pose = &rest[carrier.limb];
         let spline = pose.spline();
@@ -280,12 +297,16 @@ fn handles(
         let between = sub_keys(&spline, &shape.vertices, options.sub_keys);
         let between = between.into_iter().map(|v| (Some(v), spline.nearest(shape.vertices[v]).point));
         for (vertex, on) in ends.into_iter().chain(between) {
-            let Some(vertex) = vertex.filter(|v| shape.vertices[*v].distance(on) <= edge && !vertices.contains(v))
-            else {
-                continue;
-            };
-            vertices.push(vertex);
-            found.push(Handle { limb: carrier.limb, on, offset: shape.vertices[vertex] - on });
+            let Some(vertex) = vertex.filter(|v| shape.vertices[*v].distance(on) <= edge) else { continue };
+            let handle = Handle { limb: carrier.limb, on, offset: shape.vertices[vertex] - on };
+            match vertices.iter().position(|v| *v == vertex) {
+                Some(known) if found[known].iter().any(|other: &Handle| other.limb == carrier.limb) => {}
+                Some(known) => found[known].push(handle),
+                None => {
+                    vertices.push(vertex);
+                    found.push(vec![handle]);
+                }
+            }
         }
     }
     (vertices, found)
@@ -337,6 +358,28 @@ mod tests {
             rest.iter().map(|l| LimbPose { ends: (turn(l.ends.0), turn(l.ends.1)), ..*l }).collect();
         let found = puppet.pose(&moved).unwrap();
         assert!(outline.iter().zip(&found).all(|(a, b)| turn(*a).distance(*b) < 1e-8));
+    }
+
+    #[test]
+    fn neither_the_order_of_limbs_nor_where_an_outline_begins_changes_a_bent_arm() {
+        let (outline, rest) = arm();
+        let posed = |outline: &[Point], order: [usize; 2]| -> Vec<Point> {
+            let carriers = order.map(carrier);
+            let mut puppet = Puppet::new(outline, outline, &rest, &carriers, &Options::default()).unwrap();
+            puppet.pose(&bent(1.9)).unwrap()
+        };
+        let farthest = |a: &[Point], b: &[Point]| a.iter().zip(b).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
+        let wanted = posed(&outline, [0, 1]);
+        let off = farthest(&wanted, &posed(&outline, [1, 0]));
+        assert!(off < 1e-6, "the other limb comes first: {off} px");
+        for start in [1, 7, 20, 33] {
+            let mut other = outline.clone();
+            other.rotate_left(start);
+            let mut found = posed(&other, [0, 1]);
+            found.rotate_right(start);
+            let off = farthest(&wanted, &found);
+            assert!(off < 0.3, "begun at point {start}: {off} px");
+        }
     }
 
     #[test]

@@ -327,7 +327,7 @@ fn set_way(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
 fn stop_slips(postures: &mut [Vec<Point>], on: &Ground, size: f64) {
     for (foot, start, shifts) in slips(postures, on, size) {
         let shifts: Vec<Point> = shifts.into_iter().map(|x| Point::new(x, 0.0)).collect();
-        faded(postures, on.leg(foot), start, &shifts, |t| on.moves(foot, t));
+        faded(postures, on, foot, (start, &shifts));
     }
 }
 
@@ -337,18 +337,24 @@ fn set_legs(postures: &mut [Vec<Point>], turns: &[Vec<f64>], on: &Ground) {
         for run in on.contacts.runs(foot.leg) {
             let gap = |t: usize| on.above(foot, &postures[t], turns[t]);
             let shifts: Vec<Point> = run.clone().map(|t| Point::new(0.0, gap(t))).collect();
-            faded(postures, on.leg(foot), run.start, &shifts, |t| on.moves(foot, t));
+            faded(postures, on, foot, (run.start, &shifts));
         }
     }
 }
 
-/// Moves a foot by the shifts of a contact, and less on the frames beside it, on the frames on which it `moves`.
-fn faded(postures: &mut [Vec<Point>], leg: &[usize], start: usize, shifts: &[Point], moves: impl Fn(usize) -> bool) {
+/// Moves a foot by the shifts of a contact that begins at `start`, and less on the frames beside it, where it may be moved. Another contact of the
+/// foot stays as it is.
+fn faded(postures: &mut [Vec<Point>], on: &Ground, foot: &Foot, (start, shifts): (usize, &[Point])) {
     let end = start + shifts.len();
-    for t in (start.saturating_sub(FADE)..(end + FADE).min(postures.len())).filter(|&t| moves(t)) {
+    let runs = on.contacts.runs(foot.leg);
+    let before = runs.iter().filter_map(|run| start.checked_sub(run.end)).min().unwrap_or(FADE).min(FADE);
+    let after = runs.iter().filter_map(|run| run.start.checked_sub(end)).min().unwrap_or(FADE).min(FADE);
+    let frames = start.saturating_sub(before)..(end + after).min(postures.len());
+    for t in frames.filter(|&t| on.moves(foot, t)) {
         let inside = t.clamp(start, end - 1);
-        let weight = 1.0 - t.abs_diff(inside) as f64 / (FADE + 1) as f64;
-        reach(&mut postures[t], leg, shifts[inside - start] * weight);
+        let room = if t < start { before } else { after };
+        let weight = 1.0 - t.abs_diff(inside) as f64 / (room + 1) as f64;
+        reach(&mut postures[t], on.leg(foot), shifts[inside - start] * weight);
     }
 }
 

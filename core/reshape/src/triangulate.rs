@@ -18,13 +18,15 @@ use std::collections::BTreeMap;
 
 mod constraints;
 
-use constraints::{Mesh, constrain};
+use constraints::{Mesh, constrain, insert};
 
 /// Smallest angle of refined triangles in degrees. Refinement is proven to end below 20.7; at this angle it nearly
 /// always ends.
 pub const LEAST_ANGLE: f64 = 25.0;
 /// A point closer to the previous one than this share of the requested edge is left out.
 const SHORTEST: f64 = 0.1;
+/// Least distance of inner vertices that are given from each other and from the outlines, in edges.
+const APART: f64 = 0.35;
 /// Largest triangle, in areas of the equilateral triangle on the requested edge.
 const LARGEST: f64 = 1.6;
 /// Triangles smaller than this share of the square of the requested edge are not refined further. They occur at sharp
@@ -100,6 +102,21 @@ pub struct Triangles {
 ///
 /// A [`TriangulateError`]; holes are numbered after the outlines.
 pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> Result<Triangles, TriangulateError> {
+    triangulate_with(outlines, holes, &[], edge)
+}
+
+/// Like [`triangulate`], with vertices at the places `inner`, in pixels. A place outside, or nearer than 0.35 edges to an outline or
+/// to a place before it, has none.
+///
+/// # Errors
+///
+/// As for [`triangulate`].
+pub fn triangulate_with(
+    outlines: &[Vec<Point>],
+    holes: &[Vec<Point>],
+    inner: &[Point],
+    edge: f64,
+) -> Result<Triangles, TriangulateError> {
     if !(edge > 0.0 && edge.is_finite()) {
         return Err(TriangulateError::Edge { found: edge });
     }
@@ -108,6 +125,9 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
     let (outside, inside) = rings.split_at(outlines.len());
     let mut mesh = Mesh::new();
     constrain(&mut mesh, &rings);
+    for p in apart(inner, &rings, APART * edge) {
+        insert(&mut mesh, p);
+    }
     let largest = LARGEST * 3f64.sqrt() / 4.0 * edge * edge;
     // The area outside of the outlines is not refined: the flat angles between an outline and its hull would produce
     // tiny triangles.
@@ -119,6 +139,19 @@ pub fn triangulate(outlines: &[Vec<Point>], holes: &[Vec<Point>], edge: f64) -> 
         .with_max_additional_vertices(most(&rings, largest));
     mesh.refine(parameters);
     collect(&mesh, outside, inside)
+}
+
+/// The places within rings that are at least this far from the rings and from the places before them.
+fn apart(places: &[Point], rings: &[Vec<Point>], least: f64) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for &p in places.iter().filter(|p| p.is_finite()) {
+        let free = rings.iter().all(|ring| polyline::distance(p, ring, true) >= least)
+            && kept.iter().all(|q| q.distance(p) >= least);
+        if free && rings.iter().any(|ring| winding(ring, p) != 0) {
+            kept.push(p);
+        }
+    }
+    kept
 }
 
 /// A ring without repeated points and without segments longer than an edge.

@@ -9,7 +9,7 @@
 //! **Contacts.** Where an ankle of the content's clip hardly moves in the picture, the ankle of the result must not
 //! move either. First the pelvis takes up the common motion of the standing feet; between contacts its shift is
 //! interpolated linearly. The leg takes up the rest by inverse kinematics of its two limbs (law of cosines). This
-//! correction fades in and out beside the contact.
+//! correction fades in and out beside the contact, but not into another contact of the foot.
 //!
 //! Limits: a clip whose pelvis stays in one place has no ground to stand on. For such a clip nothing is done.
 
@@ -17,6 +17,7 @@ use rototoon_base::geometry::Point;
 use rototoon_base::numeric::dense::DenseCholesky;
 use rototoon_base::scene::clip::resample;
 use rototoon_base::scene::skeleton::{COUNT, LEGS, LIMBS, PARENTS, Posture, limb_lengths, torso};
+use std::ops::Range;
 
 /// Greatest number of rounds for the limb constraints. For long limbs little remains after the second; short limbs need
 /// a few more.
@@ -101,7 +102,7 @@ fn constrain(posture: &mut Posture, range: &[(f64, f64); LIMBS]) {
 }
 
 /// Ranges of frames during which an ankle stands.
-pub fn contacts(postures: &[Posture], ankle: usize) -> Vec<std::ops::Range<usize>> {
+pub fn contacts(postures: &[Posture], ankle: usize) -> Vec<Range<usize>> {
     let size = postures.iter().map(torso).sum::<f64>() / postures.len().max(1) as f64;
     let still: Vec<bool> =
         postures.windows(2).map(|pair| pair[0][ankle].distance(pair[1][ankle]) < STANDING * size).collect();
@@ -128,7 +129,7 @@ pub fn keep_contacts(postures: &mut [Posture], content: &[Posture]) {
         return;
     }
     let standing = LEGS.map(|leg| contacts(&content, leg[2]));
-    let shifts = |postures: &[Posture]| -> Vec<(usize, std::ops::Range<usize>, Vec<Point>)> {
+    let shifts = |postures: &[Posture]| -> Vec<(usize, Range<usize>, Vec<Point>)> {
         LEGS.iter()
             .zip(&standing)
             .enumerate()
@@ -154,13 +155,24 @@ pub fn keep_contacts(postures: &mut [Posture], content: &[Posture]) {
         posture.iter_mut().for_each(|p| *p += shift);
     }
     for (leg, range, shift) in shifts(postures) {
-        let first = range.start.saturating_sub(FADE);
-        for frame in first..(range.end + FADE).min(postures.len()) {
+        let [before, after] = room(&range, &standing[leg]);
+        let first = range.start.saturating_sub(before);
+        for frame in first..(range.end + after).min(postures.len()) {
             let inside = frame.clamp(range.start, range.end - 1);
-            let weight = 1.0 - frame.abs_diff(inside) as f64 / (FADE + 1) as f64;
+            let room = if frame < range.start { before } else { after };
+            let weight = 1.0 - frame.abs_diff(inside) as f64 / (room + 1) as f64;
             reach(&mut postures[frame], &LEGS[leg], shift[inside - range.start] * weight);
         }
     }
+}
+
+/// Frames before and after a contact on which its correction fades: [`FADE`], or those up to the foot's next contact, which must not move with
+/// this one.
+fn room(range: &Range<usize>, contacts: &[Range<usize>]) -> [usize; 2] {
+    let least = |gaps: &mut dyn Iterator<Item = usize>| gaps.min().unwrap_or(FADE).min(FADE);
+    let before = least(&mut contacts.iter().filter_map(|other| range.start.checked_sub(other.end)));
+    let after = least(&mut contacts.iter().filter_map(|other| other.start.checked_sub(range.end)));
+    [before, after]
 }
 
 fn between_known(known: &[(usize, Point)], frame: usize) -> Point {
@@ -259,6 +271,35 @@ mod tests {
             assert!(p[13].distance(made[0][13]) < 1e-9);
             assert!((p[11].distance(p[12]) - before[0]).abs() < 1e-9);
             assert!((p[12].distance(p[13]) - before[1]).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_foot_that_steps_at_once_stands_on_both_places() {
+        // From one frame to the next, or over a few, the left foot is put half a torso further.
+        for between in 0..6 {
+            let frames = 12 + between;
+            let along = |f: usize| (f.saturating_sub(5) as f64 / (between + 1) as f64).min(1.0) * 0.5;
+            let content: Vec<Posture> = (0..frames)
+                .map(|f| {
+                    let mut p = standing(0.03 * f as f64);
+                    p[13] = Point::new(along(f), 1.9);
+                    p[16] = Point::new(0.2, 1.9);
+                    [12, 15].into_iter().for_each(|knee| p[knee].x += 0.5);
+                    p
+                })
+                .collect();
+            assert_eq!(contacts(&content, 13), [0..6, 6 + between..frames]);
+            assert_eq!(contacts(&content, 16), vec![0..frames]);
+            let mut made = content.clone();
+            for (f, p) in made.iter_mut().enumerate() {
+                p[13] += Point::new(0.0, -0.02 * (f % 4) as f64);
+            }
+            keep_contacts(&mut made, &content);
+            for stood in [0..6, 6 + between..frames] {
+                let off = stood.clone().map(|f| made[f][13].distance(made[stood.start][13])).fold(0.0, f64::max);
+                assert!(off < 1e-9, "{between} frames between: the foot slides by {off} torsos");
+            }
         }
     }
 

@@ -324,7 +324,7 @@ pub fn translate_and_judge(
 ) -> Result<(Clip, Grounds), StyleError> {
     progress.report(STEP, 0.0)?;
     let (clips, sides) = sides::to_content(human_clips(clips, request)?, request);
-    let clips = &clips[..];
+    let clips = &by_name(clips)[..];
     let grid = Grid::new(clips, request)?;
     let keys = keys(&grid, request);
     let mut grounds = Grounds::new(&grid, request, options, sides);
@@ -384,6 +384,18 @@ fn towards_content(made: &mut Prediction, grid: &Grid, share: f64, keep_lengths:
     for (row, posture) in made.rows.iter_mut().zip(&content) {
         row.iter_mut().zip(grid::row(posture)).for_each(|(value, own)| *value = own + share * (*value - own));
     }
+}
+
+/// The clips in the order of their names. The order in which they were given is that in which a library got them, and says nothing; a
+/// factorisation and ties between framings would follow it.
+fn by_name(clips: Cow<'_, [Clip]>) -> Cow<'_, [Clip]> {
+    let by_name = |a: &Clip, b: &Clip| (&a.character, &a.motion).cmp(&(&b.character, &b.motion));
+    if clips.is_sorted_by(|a, b| by_name(a, b).is_le()) {
+        return clips;
+    }
+    let mut clips = clips.into_owned();
+    clips.sort_by(by_name);
+    Cow::Owned(clips)
 }
 
 /// The clips of humans: a library may hold other bodies, from which nothing is learned.

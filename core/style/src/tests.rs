@@ -68,6 +68,18 @@ pub(crate) fn apart(a: &[Vec<Point>], b: &[Vec<Point>]) -> f64 {
 }
 
 #[test]
+fn the_order_of_the_clips_changes_nothing() {
+    let (clips, mut turned) = (library(), library());
+    turned.reverse();
+    turned.rotate_left(7);
+    for (id, _, preset) in Preset::ALL {
+        let options = Options { preset, ..Options::default() };
+        let made = |clips: &[Clip]| translate(clips, &request(&[]), &options, &Silent).unwrap();
+        assert_eq!(made(&clips), made(&turned), "{id}");
+    }
+}
+
+#[test]
 fn every_preset_is_nearer_to_the_truth_than_a_copy_and_says_how_sure_it_is() {
     let (clips, truth) = (library(), clip(1, 1, 24));
     let copied = apart(&clip(0, 1, 24).postures, &truth.postures);

@@ -219,3 +219,24 @@ fn the_own_motion_on_twos_is_that_on_ones() {
         assert!((0..clip.len()).all(|t| made[t] == wanted[t / 2]));
     }
 }
+
+#[test]
+fn a_contact_that_is_corrected_leaves_the_foot_s_other_contact_alone() {
+    let (template, feet) = (Template::human(), feet(Some(1.0)));
+    let legs = template.legs();
+    // The first foot stands up to frame 5 and from frame 8 on.
+    let contacts = Contacts {
+        stands: vec![(0..14).map(|t| !(6..8).contains(&t)).collect(), vec![false; 14]],
+        air: vec![false; 14],
+        ground: 0.0,
+        way: true,
+        times: (0..14).map(f64::from).collect(),
+    };
+    let on = Ground { legs: &legs, feet: &feet, contacts: &contacts, y: 0.0, drawn: &[] };
+    let before = walk(14, true);
+    let mut made = before.clone();
+    faded(&mut made, &on, &feet[0], (8, &[Point::new(0.0, -6.0); 6]));
+    let lifted = |t: usize| before[t][LEGS[0][2]].y - made[t][LEGS[0][2]].y;
+    assert!((0..6).all(|t| lifted(t) == 0.0) && (8..14).all(|t| (lifted(t) - 6.0).abs() < 1e-9));
+    assert!((lifted(6) - 2.0).abs() < 1e-9 && (lifted(7) - 4.0).abs() < 1e-9, "{} {}", lifted(6), lifted(7));
+}

@@ -71,6 +71,6 @@ fn position(mesh: &Mesh, vertex: FixedVertexHandle) -> Point {
     Point::new(p.x, p.y)
 }
 
-fn insert(mesh: &mut Mesh, p: Point) -> Option<FixedVertexHandle> {
+pub fn insert(mesh: &mut Mesh, p: Point) -> Option<FixedVertexHandle> {
     mesh.insert(Point2::new(p.x, p.y)).ok()
 }

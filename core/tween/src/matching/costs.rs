@@ -9,7 +9,7 @@ use super::super::grid::Grid;
 use super::super::stroke::Stroke;
 use super::outline::{Outline, Way, likely};
 use super::similarity::Movement;
-use super::{Fixed, Options};
+use super::{Fixed, Options, twins};
 use rayon::prelude::{IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::similarity::Similarity;
 use rototoon_base::geometry::{Point, polygon};
@@ -59,13 +59,15 @@ pub(super) struct Figure<'a> {
     pub middle: Point,
     /// Root mean square distance of the samples from the middle, in pixels; at least 1.
     pub radius: f64,
+    /// For each stroke the first one that is the same.
+    pub firsts: Vec<usize>,
 }
 
 impl<'a> Figure<'a> {
     pub fn new(strokes: &'a [Stroke]) -> Self {
         let outlines: Vec<_> = strokes.par_iter().map(|s| Outline::new(s, s.closed)).collect();
         let rings = strokes.par_iter().map(|s| if s.closed { None } else { Outline::new(s, true) }).collect();
-        Self::of_outlines(strokes, outlines, rings)
+        Self::of_outlines(strokes, outlines, rings, twins::firsts(strokes))
     }
 
     /// The same drawing with the named strokes only. Indices and radius stay.
@@ -75,12 +77,18 @@ impl<'a> Figure<'a> {
             named.iter().for_each(|&i| kept[i] = list[i].clone());
             kept
         };
-        Self { radius: self.radius, ..Self::of_outlines(self.strokes, pick(&self.outlines), pick(&self.rings)) }
+        let firsts = self.firsts.clone();
+        Self { radius: self.radius, ..Self::of_outlines(self.strokes, pick(&self.outlines), pick(&self.rings), firsts) }
     }
 
-    fn of_outlines(strokes: &'a [Stroke], outlines: Vec<Option<Outline>>, rings: Vec<Option<Outline>>) -> Self {
+    fn of_outlines(
+        strokes: &'a [Stroke],
+        outlines: Vec<Option<Outline>>,
+        rings: Vec<Option<Outline>>,
+        firsts: Vec<usize>,
+    ) -> Self {
         let middle = polygon::center(&outlines.iter().flatten().map(|o| o.centre).collect::<Vec<_>>());
-        let mut figure = Self { strokes, outlines, rings, middle, radius: 1.0 };
+        let mut figure = Self { strokes, outlines, rings, middle, radius: 1.0, firsts };
         figure.radius = figure.spread();
         figure
     }

@@ -8,10 +8,11 @@ use super::movement::Other;
 use super::relaxation::{Chosen, margin};
 
 /// Lowers the confidence of strokes of which another assignment says something else. `others` cost more than what is taken by their `more`.
-pub(super) fn lower(found: &mut [Option<Chosen>], others: &[Other]) {
+/// `firsts` has for each counterpart the first one that is the same.
+pub(super) fn lower(found: &mut [Option<Chosen>], others: &[Other], firsts: &[usize]) {
     for other in others {
         let differs = |(choice, to): (&Option<Chosen>, &Option<usize>)| {
-            choice.as_ref().zip(*to).is_some_and(|(choice, to)| choice.to != to)
+            choice.as_ref().zip(*to).is_some_and(|(choice, to)| firsts[choice.to] != firsts[to])
         };
         let differing: Vec<usize> =
             found.iter().zip(&other.to).enumerate().filter(|(_, pair)| differs(*pair)).map(|(i, _)| i).collect();
@@ -35,7 +36,7 @@ mod tests {
         let taken = || (0..4).map(|to| Some(Chosen { to, way, confidence: 0.97 })).collect::<Vec<_>>();
         let lowered = |more: f64, to: [usize; 4]| -> Vec<f64> {
             let mut found = taken();
-            lower(&mut found, &[Other { more, to: to.map(Some).to_vec() }]);
+            lower(&mut found, &[Other { more, to: to.map(Some).to_vec() }], &[0, 1, 2, 3]);
             found.into_iter().flatten().map(|choice| choice.confidence).collect()
         };
         let shifted = lowered(0.2, [0, 2, 3, 1]);

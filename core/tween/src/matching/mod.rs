@@ -24,6 +24,8 @@
 //! together where they stood (`standing`). They also count as
 //! neighbours of the other strokes. Strokes of different pegs are never pairs.
 //!
+//! Strokes that are drawn twice (`twins`) are no reason for doubt.
+//!
 //! Limits: two equal limbs that have changed places can only be told apart by the strokes attached to them, by their
 //! layers and by their colours. A disc does not show its turn. It is assumed to turn with its surroundings.
 //!
@@ -44,7 +46,9 @@ mod similarity;
 mod squash;
 mod standing;
 mod start;
+mod torn;
 mod turns;
+mod twins;
 mod unchanged;
 
 pub use super::chain::Chain;
@@ -279,7 +283,7 @@ fn chosen(
     direction::settle(a, b, &mut found);
     turns::settle((a, b), &ways, &mut found);
     direction::settle(a, b, &mut found);
-    doubt::lower(&mut found, &others);
+    doubt::lower(&mut found, &others, &b.firsts);
     Ok((found, around))
 }
 

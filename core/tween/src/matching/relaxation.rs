@@ -13,7 +13,7 @@
 
 use super::super::grid::Grid;
 use super::Options;
-use super::costs::{Figure, Rows};
+use super::costs::{Figure, Label, Rows};
 use super::outline::{Outline, Way};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
@@ -104,7 +104,6 @@ pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options:
     let links = &neighbours.0;
     let images: Vec<Images> = (0..links.len()).into_par_iter().map(|i| Images::new(i, rows, &links[i])).collect();
     let links = Links { links, images: &images };
-    let columns = b.outlines.len();
     let mut weights: Vec<Weights> =
         rows.labels.iter().map(|l| Weights { labels: vec![0.0; l.len()], none: 1.0 }).collect();
     for (i, labels) in rows.labels.iter().enumerate() {
@@ -115,13 +114,13 @@ pub(super) fn relaxed(neighbours: &Neighbours, b: &Figure, rows: &Rows, options:
         let beta = BETA.0 * (BETA.1 / BETA.0).powf(round as f64 / (ROUNDS - 1) as f64);
         let costs = supported(rows, links, &weights);
         let next = costs.par_iter().enumerate().map(|(i, c)| softened(c, none_cost(rows, i, options), beta)).collect();
-        weights = normalised(next, rows, columns);
+        weights = normalised(next, rows, b.outlines.len());
         let settled = |w: &Weights| w.none > SETTLED || w.labels.iter().any(|&v| v > SETTLED);
         if weights.iter().all(settled) {
             break;
         }
     }
-    harden(rows, links, weights, columns, options)
+    harden(rows, links, weights, b, options)
 }
 
 fn none_cost(rows: &Rows, i: usize, options: &Options) -> f64 {
@@ -194,12 +193,12 @@ type Assigned = (f64, Vec<Option<usize>>, Vec<Vec<f64>>);
 
 /// Turns weights into exact assignments. The first follows from the weights, each later one from the assignment before
 /// it.
-fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options: &Options) -> Relaxed {
+fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, b: &Figure, options: &Options) -> Relaxed {
     let mut weights = soft;
     let mut best: Option<Assigned> = None;
     for _ in 0..EXACT {
         let costs = supported(rows, links, &weights);
-        let picked = assigned(rows, &costs, columns, options);
+        let picked = assigned(rows, &costs, b.outlines.len(), options);
         weights = picked
             .iter()
             .zip(&rows.labels)
@@ -224,7 +223,7 @@ fn harden(rows: &Rows, links: Links, soft: Vec<Weights>, columns: usize, options
     let chosen = picked.iter().enumerate().map(|(i, pick)| {
         pick.map(|k| {
             let label = rows.labels[i][k];
-            Chosen { to: label.to, way: label.way, confidence: sureness(rows, &costs, i, k, options) }
+            Chosen { to: label.to, way: label.way, confidence: sureness(rows, &costs, (i, k), b, options) }
         })
     });
     Relaxed { chosen: chosen.collect(), energy }
@@ -255,10 +254,12 @@ fn assigned(rows: &Rows, costs: &[Vec<f64>], columns: usize, options: &Options) 
     found.into_iter().enumerate().map(label_of).collect()
 }
 
-/// How sure a choice is, 0 to 1: by how much the next best counterpart costs more, and how cheap the choice itself is.
-fn sureness(rows: &Rows, costs: &[Vec<f64>], i: usize, k: usize, options: &Options) -> f64 {
-    let (own, to) = (costs[i][k], rows.labels[i][k].to);
-    let others = rows.labels[i].iter().zip(&costs[i]).filter(|(label, _)| label.to != to).map(|(_, &cost)| cost);
+/// How sure a choice is, 0 to 1: by how much the next best counterpart costs more, and how cheap the choice itself is. A stroke that is the
+/// same as the counterpart is no other one.
+fn sureness(rows: &Rows, costs: &[Vec<f64>], (i, k): (usize, usize), b: &Figure, options: &Options) -> f64 {
+    let (own, to) = (costs[i][k], b.firsts[rows.labels[i][k].to]);
+    let differs = |(label, _): &(&Label, &f64)| b.firsts[label.to] != to;
+    let others = rows.labels[i].iter().zip(&costs[i]).filter(differs).map(|(_, &cost)| cost);
     let next = others.fold(options.max_cost + SUPPORT, f64::min);
     let fit = (1.0 - own / (options.max_cost + SUPPORT)).clamp(0.0, 1.0);
     margin(next - own) * fit.sqrt()

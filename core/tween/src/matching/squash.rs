@@ -13,7 +13,7 @@
 //! between two ways half a turn apart, which `turns` settles.
 //!
 //! An open line of as many points as its counterpart runs as its points say where that turns it much less: a lid that closes bends the other way,
-//! and is not turned over. So does a copy that only turned.
+//! and is not turned over. So does a copy that only turned. Neither does where that tears it from what it touches (`torn`).
 
 use super::super::angle::wrap;
 use super::super::line::{Line, vertex_shares};
@@ -22,8 +22,8 @@ use super::costs::Figure;
 use super::movement::held_by;
 use super::outline::{Outline, Way};
 use super::relaxation::Chosen;
-use super::setting;
 use super::similarity::Movement;
+use super::{setting, torn};
 use crate::affine::{Affine, COPY, elongation};
 
 /// Price of a stretch, and of a turn in radians, in shares of the shape's variance. They are not squared: a little turn would buy a smaller stretch.
@@ -69,6 +69,12 @@ pub(super) fn settle(a: &Figure, b: &Figure, found: &mut [Option<Chosen>]) {
     let still = Movement { turn: 0.0, scale: 1.0, source: a.middle, target: b.middle };
     let around = held_by(a, b, found, &still, HELD * a.radius);
     let squashes = setting::squashes(a, b, found);
+    let given = found.to_vec();
+    // Read from the other end, it would turn: what such a stroke does is no proof for another one.
+    let settled = |k: usize| {
+        let own = given[k].as_ref();
+        own.is_some_and(|own| !own.way.reversed || a.strokes[k].closed || !as_many(a, b, (k, own.to)))
+    };
     for (i, choice) in found.iter_mut().enumerate() {
         let Some(choice) = choice else { continue };
         let (Some(p), Some(q)) = (&a.outlines[i], &b.outlines[choice.to]) else { continue };
@@ -76,11 +82,17 @@ pub(super) fn settle(a: &Figure, b: &Figure, found: &mut [Option<Chosen>]) {
         let better = match (p.closed, q.closed) {
             (true, true) => closed((one, p), (other, q), &choice.way, around[i].turn)
                 .or_else(|| squashes[i]?.way_of(one, p, (other, q), &choice.way)),
-            (false, false) => open((one, p), (other, q), &choice.way, around[i].turn),
+            (false, false) => open((one, p), (other, q), &choice.way, around[i].turn)
+                .filter(|way| !torn::tears((a, b), &given, (i, choice.to), (&choice.way, way), settled)),
             _ => None,
         };
         choice.way = better.unwrap_or(choice.way);
     }
+}
+
+/// Whether a stroke and its counterpart have as many points.
+fn as_many(a: &Figure, b: &Figure, (from, to): (usize, usize)) -> bool {
+    a.strokes[from].points.len() == b.strokes[to].points.len()
 }
 
 fn tried(way: Way, affine: Affine, by_points: bool, expected: f64) -> Tried {
