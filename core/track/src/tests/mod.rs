@@ -5,6 +5,7 @@ mod absence;
 mod borders;
 mod branches;
 mod cached;
+mod depths;
 mod holds;
 mod limbs;
 mod memory;
