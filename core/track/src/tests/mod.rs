@@ -14,6 +14,7 @@ mod outward;
 mod progress;
 mod remembered;
 mod rotoscope;
+mod round;
 mod scene;
 mod slivers;
 mod wobble;
