@@ -17,4 +17,5 @@ mod rotoscope;
 mod round;
 mod scene;
 mod slivers;
+mod spinning;
 mod wobble;
