@@ -4,6 +4,7 @@ use super::job::{Correction, Job, SpanTrack};
 use crate::contract::tracking::{JobReport, PartTrack, Tracking};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{Cancelled, FrameNumber, Part, Progress, Scene, Span};
+use std::ops::RangeInclusive;
 use std::sync::Mutex;
 
 /// A part over a span, before its occluders are known.
@@ -11,45 +12,71 @@ use std::sync::Mutex;
 pub(crate) struct Task {
     pub part: usize,
     pub span: Span,
-    pub depth: f64,
 }
 
 /// All tasks of a scene, in the order of parts, then spans.
 pub(crate) fn tasks(scene: &Scene) -> Vec<Task> {
-    let of_part = |(part, p): (usize, &Part)| {
-        let depth = p.depth;
-        p.spans().into_iter().map(move |span| Task { part, span, depth }).collect::<Vec<_>>()
-    };
+    let of_part =
+        |(part, p): (usize, &Part)| p.spans().into_iter().map(move |span| Task { part, span }).collect::<Vec<_>>();
     scene.parts.iter().enumerate().flat_map(of_part).collect()
 }
 
 /// The tasks to do next: of those that wait for no other, the ones that share frames with the earliest. `None` if all
 /// tasks are done.
 ///
-/// `waits(t, o)` says whether task t needs the result of the unfinished task o. It is called only for tasks o of nearer
-/// parts, so there is always a task that waits for none.
+/// `waits(t, o)` says whether task t needs the result of the unfinished task o, whose part is nearer on some frame. Parts
+/// that change their places in the order may wait for each other. Then those with the largest `depth` go first.
 pub(crate) fn next_wave(
+    scene: &Scene,
     tasks: &[Task],
     is_done: impl Fn(usize) -> bool,
     waits: impl Fn(&Task, &Task) -> bool,
 ) -> Option<Vec<usize>> {
     let open: Vec<usize> = (0..tasks.len()).filter(|&t| !is_done(t)).collect();
-    let nearer = |t: usize, o: usize| tasks[o].depth > tasks[t].depth;
-    let held_up = |t: usize| open.iter().any(|&o| nearer(t, o) && waits(&tasks[t], &tasks[o]));
-    let ready: Vec<usize> = open.iter().copied().filter(|&t| !held_up(t)).collect();
+    let ready = first_of(&open, |t| scene.parts[tasks[t].part].depth, |t, o| waits(&tasks[t], &tasks[o]));
     let &earliest = ready.iter().min_by_key(|&&t| tasks[t].span)?;
     Some(ready.into_iter().filter(|&t| overlap(tasks[t].span, tasks[earliest].span)).collect())
 }
 
-/// The closed contours nearer than `depth` on a frame: the key if the frame has one, otherwise the result of `tracked`
+/// Those that wait for none of the others, in their order. If all wait, those with the largest depth.
+pub(crate) fn first_of(
+    open: &[usize],
+    depth: impl Fn(usize) -> f64,
+    waits: impl Fn(usize, usize) -> bool,
+) -> Vec<usize> {
+    let held_up = |t: usize| open.iter().any(|&o| waits(t, o));
+    let ready: Vec<usize> = open.iter().copied().filter(|&t| !held_up(t)).collect();
+    if !ready.is_empty() {
+        return ready;
+    }
+    let largest = open.iter().map(|&t| depth(t)).max_by(f64::total_cmp);
+    open.iter().copied().filter(|&t| Some(depth(t)) == largest).collect()
+}
+
+/// Whether part `a` is nearer than part `b` on a frame.
+pub(crate) fn is_nearer(scene: &Scene, a: usize, b: usize, frame: FrameNumber) -> bool {
+    scene.parts[a].depth_at(frame) > scene.parts[b].depth_at(frame)
+}
+
+/// Whether part `a` is nearer than part `b` on any of some frames.
+pub(crate) fn is_nearer_on_any(scene: &Scene, a: usize, b: usize, mut frames: RangeInclusive<FrameNumber>) -> bool {
+    let same_on_all = [a, b].iter().all(|&p| scene.parts[p].depths.is_empty());
+    match same_on_all {
+        true => !frames.is_empty() && scene.parts[a].depth > scene.parts[b].depth,
+        false => frames.any(|frame| is_nearer(scene, a, b, frame)),
+    }
+}
+
+/// The closed contours nearer than a part on a frame: the key if the frame has one, otherwise the result of `tracked`
 /// for the task whose span contains the frame. A part hides nothing where it is absent.
 pub(crate) fn nearer_contours(
     scene: &Scene,
     tasks: &[Task],
-    (depth, frame): (f64, FrameNumber),
+    (part, frame): (usize, FrameNumber),
     tracked: impl Fn(usize) -> Option<Vec<Point>>,
 ) -> Vec<Vec<Point>> {
-    let hides = |p: &Part| p.closed && p.depth > depth && p.point_count() > 2 && !p.is_absent(frame);
+    let depth = scene.parts[part].depth_at(frame);
+    let hides = |p: &Part| p.closed && p.depth_at(frame) > depth && p.point_count() > 2 && !p.is_absent(frame);
     let nearer = scene.parts.iter().enumerate().filter(|(_, p)| hides(p));
     let contour = |(index, p): (usize, &Part)| {
         let holds = |t: &Task| t.part == index && t.span.first < frame && frame < t.span.last;
@@ -65,7 +92,7 @@ pub(crate) fn overlap(a: Span, b: Span) -> bool {
 
 /// The job of a task. `occluders` are those of [`Job`].
 pub(crate) fn job(scene: &Scene, task: Task, occluders: Vec<Vec<Vec<Point>>>) -> Job {
-    let Task { part, span, .. } = task;
+    let Task { part, span } = task;
     let subject = &scene.parts[part];
     let absent = |index: &usize| subject.is_absent(span.first + *index as FrameNumber);
     let corrections = (1..span.len() - 1).filter(|index| !absent(index)).filter_map(|index| {

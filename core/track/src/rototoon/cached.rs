@@ -206,7 +206,7 @@ impl Entry {
     /// Whether it has a contour for each frame of each member, as this program would have written it: a folder may be shared with anybody.
     fn fits(&self, scene: &Scene, tasks: &[Task], members: &[usize]) -> bool {
         let is_of = |track: &SpanTrack, t: usize, span: Span| {
-            let Task { part, span: Span { first, last }, .. } = tasks[t];
+            let Task { part, span: Span { first, last } } = tasks[t];
             let count = scene.parts[part].point_count();
             first <= span.first && span.first < span.last && span.last <= last && is_track(track, span.len(), count)
         };

@@ -32,7 +32,7 @@ pub(super) struct Choice<'a> {
 impl<'a> Choice<'a> {
     /// The choice of the `members` of a stretch, which is a list of tasks.
     pub fn new(
-        (scene, tasks, stretch): (&Scene, &[Task], &[usize]),
+        (scene, tasks, stretch): (&'a Scene, &[Task], &[usize]),
         members: &'a [&'a Pooled],
         mechanisms: Mechanisms,
     ) -> Self {
@@ -43,7 +43,8 @@ impl<'a> Choice<'a> {
             Some(Contender {
                 part: task.part,
                 span: task.span,
-                depth: task.depth,
+                depth: part.depth,
+                depths: &part.depths,
                 hides: mechanisms.has(Mechanism::Hiding) && part.closed && part.point_count() > 2,
                 drawings: &pooled.drawings,
                 pools: &pooled.pools,

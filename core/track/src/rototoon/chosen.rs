@@ -13,7 +13,7 @@ use super::pooled::Pooled;
 use super::{Looks, Rototoon};
 use crate::contract::error::TrackError;
 use crate::contract::tasks::Task;
-use rototoon_base::scene::{Progress, Scene, Span};
+use rototoon_base::scene::{FrameNumber, Progress, Scene, Span};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -42,8 +42,14 @@ pub(super) struct Second {
     pub margins: Vec<Vec<f64>>,
 }
 
-/// Index of a member's part, and its depth.
-type Place = (usize, f64);
+/// Index of a member's part, its depth, and its depths on single frames of its span.
+type Place = (usize, f64, Vec<(FrameNumber, f64)>);
+
+fn place(scene: &Scene, task: Task) -> Place {
+    let (part, Span { first, last }) = (&scene.parts[task.part], task.span);
+    let own = part.depths.range(first..=last).map(|(&frame, &depth)| (frame, depth));
+    (task.part, part.depth, own.collect())
+}
 
 /// What is kept, by name and span of the stretches' first members.
 #[derive(Default)]
@@ -76,7 +82,7 @@ impl Rototoon {
     ) -> Result<Arc<First>, TrackError> {
         let pools: Vec<&Pooled> = sources.iter().map(|source| &**source).collect();
         let canvas = self.canvas(&pools, frames, progress)?;
-        let members: Vec<Place> = stretch.iter().map(|&t| (tasks[t].part, tasks[t].depth)).collect();
+        let members: Vec<Place> = stretch.iter().map(|&t| place(scene, tasks[t])).collect();
         let key = sources[0].key();
         let drawn = |a: &Option<Arc<Canvas>>| a.as_ref().map(Arc::as_ptr);
         let unchanged = |known: &&Arc<First>| {

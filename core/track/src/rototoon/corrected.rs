@@ -3,7 +3,8 @@
 //! Without corrections a pool depends on the keys and the pictures alone, so it is kept when the artist pins a point.
 //!
 //! 1. On each corrected drawing every hypothesis is moved to the corrections and aligned again with the corrections as
-//!    constraints. A single pin leaves the rotation open, so rotated starts are tried too.
+//!    constraints. A single pin leaves the rotation open, so rotated starts are tried too. A corrected centre near the part
+//!    says where it is and nothing of its rotation, so alone it turns nothing: a round part fits turned as well.
 //! 2. The best results are carried to the drawings on both sides, as long as they find poses that the pools there do
 //!    not have yet. That is how one pin corrects its neighbours.
 
@@ -35,10 +36,16 @@ pub(super) fn center_reach(stage: &Stage, plain: &Pooled) -> Vec<f64> {
     let of_drawing = |d: usize| {
         let Some(center) = stage.correction(d).and_then(|c| c.center) else { return 0.0 };
         let before = plain.own_points(stage.drawings[d].first);
-        let far = polygon::center(&before).distance(center) > 2.0 * reach * stage.scale;
+        let far = is_far(&before, center, stage.models[0].texture.mesh.size * stage.scale);
         if far { reach } else { 0.0 }
     };
     (0..stage.drawings.len()).map(of_drawing).collect()
+}
+
+/// Whether a corrected centre shows where to look for a part of this size, whose points are known without it. Otherwise it is the
+/// exact place. All in one unit.
+pub(super) fn is_far(points: &[Point], center: Point, size: f64) -> bool {
+    polygon::center(points).distance(center) > 2.0 * CENTER_REACH * size
 }
 
 /// The pools of a stage with corrections, from the `pools` without. `plain` are the drawings of the pools without
@@ -88,8 +95,10 @@ fn obeying(stage: &Stage, d: usize, model: usize, pool: &[Hypothesis]) -> Vec<Hy
     let scenery = stage.scenery(model, d);
     let settler = stage.models[model].settler(&scenery);
     let own: Vec<&Hypothesis> = pool.iter().filter(|h| h.model == model).collect();
+    let only_center = stage.correction(d).is_some_and(|correction| correction.pins.is_empty());
+    let turns: &[f64] = if only_center && stage.center_reach[d] == 0.0 { &[] } else { &TURNS };
     let from = |h: &&Hypothesis| {
-        let turned = TURNS.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+        let turned = turns.iter().map(|degrees| scenery.anchors.turned(&h.pose.nodes, degrees.to_radians()));
         let settled = std::iter::once(h.pose.nodes.clone())
             .chain(turned)
             .map(|start| stage.models[model].measured(&scenery, settler.settle(&start)));

@@ -9,11 +9,15 @@
 //! that are [alike](super::alike) meet twice or more, nothing says so from the first time to the last. There the probability of each
 //! point is multiplied by that of no exchange, 1 − [`EXCHANGED`].
 //!
+//! **One key.** Beside a single key nothing follows that says which is which. So two such parts are undecided from where they first
+//! meet to the end of their tracks on that side, if they part again.
+//!
 //! The sign was found on films with their own keys and with two to four, and checked on a walk in pencil. Of the sure contours 29 of
 //! 3575 were lost on the first, and 25 of 353 on the second. Now 8 of 3372 and 1 of 278 are. `docs/src/methods/confidence.md` has the tables.
 //!
 //! **Limits.** The right contours of a walk are doubted too, until a key or a correction between the two meetings says which leg is
-//! which. Open lines are not looked at, and parts with one key have a sign of their own ([`twins`](crate::shared::twins)).
+//! which. Open lines are not looked at, nor a part with one key beside one with more. Parts with one key have a further sign
+//! ([`twins`](crate::shared::twins)).
 
 use super::alike::{Look, between_meetings, median_colour, meet};
 use super::confidence::HELD;
@@ -41,9 +45,10 @@ pub(super) fn doubt(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<
     let mut exchanges = Vec::new();
     for (a, of_a) in looks.iter().enumerate() {
         let alike = |b: &usize| matches!((of_a, &looks[*b]), (Some(x), Some(y)) if x.is_like(y));
-        for b in (a + 1..looks.len()).filter(alike) {
+        let is_single = |p: usize| scene.parts[p].keys.len() == 1;
+        for b in (a + 1..looks.len()).filter(alike).filter(|b| is_single(*b) == is_single(a)) {
             let pair = [a, b].map(|p| (&scene.parts[p], &tracking.parts[p]));
-            let frames = undecided(pair);
+            let frames = if is_single(a) { undecided_beyond(pair) } else { undecided(pair) };
             if !frames.is_empty() {
                 exchanges.push(Exchange { parts: [a, b], frames });
             }
@@ -61,11 +66,11 @@ pub(super) fn doubt(kit: Kit, scene: &Scene, tracking: &mut Tracking) -> Result<
     Ok(())
 }
 
-/// The look of a closed part at its first and its last key. `None` for other parts, parts with one key, and parts too thin for a look.
+/// The look of a closed part at its first and its last key. `None` for other parts, and parts too thin for a look.
 fn look(kit: Kit, scene: &Scene, part: &Part) -> Result<Option<Look>, TrackError> {
     let ends = [part.keys.first_key_value(), part.keys.last_key_value()];
     let [Some((&first, a)), Some((&last, b))] = ends else { return Ok(None) };
-    if !part.closed || part.point_count() < 3 || first == last {
+    if !part.closed || part.point_count() < 3 {
         return Ok(None);
     }
     let scale = working_scale(scene.footage.height);
@@ -94,9 +99,40 @@ fn inside(kit: Kit, frame: FrameNumber, contour: &[Point], scale: f64) -> Result
     Ok((!colours.is_empty()).then(|| median_colour(colours.iter().copied())))
 }
 
+/// The frames on which both of two parts have a contour.
+fn both_on([a, b]: [&PartTrack; 2]) -> Vec<FrameNumber> {
+    a.tracks.keys().filter(|frame| b.tracks.contains_key(frame)).copied().collect()
+}
+
+/// The frames on which nothing says which of two parts with one key each is which. Between two frames on which it is known
+/// they are those of [`undecided`].
+fn undecided_beyond([a, b]: [(&Part, &PartTrack); 2]) -> Vec<FrameNumber> {
+    let both = both_on([a.1, b.1]);
+    // A frame that is held from the only key shows exactly the key.
+    let shows_key =
+        |(part, track): (&Part, &PartTrack), frame| part.keys.values().any(|key| *key == track.tracks[&frame]);
+    let is_known = |frame: FrameNumber| [a, b].into_iter().any(|of| is_known(of, frame) || shows_key(of, frame));
+    let known: Vec<usize> = (0..both.len()).filter(|&k| is_known(both[k])).collect();
+    let (Some(&first), Some(&last)) = (known.first(), known.last()) else { return Vec::new() };
+    let meets = |k: &usize| meet(&a.1.tracks[&both[*k]], &b.1.tracks[&both[*k]]);
+    // From a known frame outward: from the first meeting on, if they part again.
+    let outward = |way: Vec<usize>| {
+        let met = way.iter().position(meets).filter(|&met| !way[met..].iter().all(meets));
+        met.map_or_else(Vec::new, |met| way[met.max(1)..].to_vec())
+    };
+    let mut undecided: Vec<usize> = outward((0..=first).rev().collect());
+    for ends in known.windows(2) {
+        let between = between_meetings((ends[0]..=ends[1]).map(|k| meets(&k)));
+        undecided.extend(between.into_iter().flatten().map(|k| ends[0] + k).filter(|k| !ends.contains(k)));
+    }
+    undecided.extend(outward((last..both.len()).collect()));
+    undecided.sort_unstable();
+    undecided.into_iter().map(|k| both[k]).collect()
+}
+
 /// The frames on which nothing says which of two parts is which.
 fn undecided([a, b]: [(&Part, &PartTrack); 2]) -> Vec<FrameNumber> {
-    let both: Vec<FrameNumber> = a.1.tracks.keys().filter(|frame| b.1.tracks.contains_key(frame)).copied().collect();
+    let both = both_on([a.1, b.1]);
     let known = |frame: FrameNumber| is_known(a, frame) || is_known(b, frame);
     let meets = |frame: FrameNumber| meet(&a.1.tracks[&frame], &b.1.tracks[&frame]);
     let mut undecided = Vec::new();
@@ -159,6 +195,36 @@ mod tests {
         assert!(found(&two(&[5])).is_empty());
         assert!(found(&two(&[4, 5, 6])).is_empty());
         assert!(found(&two(&(0..=LAST).collect::<Vec<_>>())).is_empty(), "always together");
+    }
+
+    #[test]
+    fn parts_with_one_key_are_undecided_from_where_they_first_meet() {
+        let single = |meetings: &[FrameNumber], keys: [FrameNumber; 2]| {
+            let mut pair = two(meetings);
+            for ((part, track), key) in pair.iter_mut().zip(keys) {
+                // A track is never exactly the key elsewhere.
+                let moved = |(&frame, points): (&FrameNumber, &mut Vec<Point>)| points[0].y += 0.01 * f64::from(frame);
+                track.tracks.iter_mut().for_each(moved);
+                part.keys = BTreeMap::from([(key, track.tracks[&key].clone())]);
+            }
+            pair
+        };
+        let beyond = |pair: &[(Part, PartTrack); 2]| undecided_beyond([0, 1].map(|k| (&pair[k].0, &pair[k].1)));
+        assert_eq!(beyond(&single(&[5], [0, 0])), (5..=12).collect::<Vec<_>>());
+        assert_eq!(beyond(&single(&[5], [12, 12])), (0..=5).collect::<Vec<_>>(), "before the key");
+        assert_eq!(beyond(&single(&[4, 9], [6, 6])), [0, 1, 2, 3, 4, 9, 10, 11, 12], "on both sides");
+        assert_eq!(beyond(&single(&[6], [6, 6])), [0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12], "on the key's frame");
+        assert!(beyond(&single(&[5], [0, 12])).is_empty(), "a key on each side");
+        assert_eq!(beyond(&single(&[3, 5], [0, 12])), [3, 4, 5]);
+        assert!(beyond(&single(&[], [0, 0])).is_empty());
+        assert!(beyond(&single(&(8..=LAST).collect::<Vec<_>>(), [0, 0])).is_empty(), "they do not part again");
+        let mut pinned = single(&[5], [0, 0]);
+        pinned[1].0.pins.insert(8, BTreeMap::from([(1, Point::ZERO)]));
+        assert!(beyond(&pinned).is_empty(), "a correction behind it");
+        let mut held = single(&[0], [0, 0]);
+        let key = held[0].0.keys[&0].clone();
+        held[0].1.tracks.insert(1, key);
+        assert_eq!(beyond(&held), Vec::<FrameNumber>::new(), "apart on a frame that shows the key");
     }
 
     #[test]

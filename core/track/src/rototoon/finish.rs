@@ -17,7 +17,7 @@ use super::refine::{Frame, Key, Refiner};
 use super::stage::{Kit, Stage};
 use crate::contract::error::TrackError;
 use crate::contract::job::{SpanSummary, SpanTrack, Termination};
-use crate::contract::tasks::Task;
+use crate::contract::tasks::{Task, is_nearer};
 use crate::shared::features::working_scale;
 use rayon::prelude::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use rototoon_base::geometry::{Point, polygon};
@@ -60,7 +60,8 @@ impl Finish {
             };
             let of_member = |k: usize| {
                 let (task, part) = (tasks[stretch[k]], &scene.parts[tasks[stretch[k]].part]);
-                if !hiding || task.depth <= tasks[stretch[m]].depth || !part.closed || part.point_count() <= 2 {
+                let is_nearer = is_nearer(scene, task.part, tasks[stretch[m]].part, first);
+                if !hiding || !is_nearer || !part.closed || part.point_count() <= 2 {
                     return None;
                 }
                 let span = members[k].job.span;

@@ -12,7 +12,7 @@ use super::stage::Kit;
 use super::{Looks, Mended, Rototoon};
 use crate::contract::error::TrackError;
 use crate::contract::job::Job;
-use crate::contract::tasks::{SharedProgress, Task, job, nearer_contours, next_wave};
+use crate::contract::tasks::{SharedProgress, Task, is_nearer, job, nearer_contours, next_wave};
 use rayon::prelude::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Scene};
@@ -35,10 +35,11 @@ impl Rototoon {
         // their own.
         let within = |o: &Task, frame: FrameNumber| o.span.first < frame && frame < o.span.last;
         let waits = |task: &Task, other: &Task| {
-            scene.parts[other.part].closed && (within(other, task.span.first) || within(other, task.span.last))
+            let hides = |frame| within(other, frame) && is_nearer(scene, other.part, task.part, frame);
+            scene.parts[other.part].closed && (hides(task.span.first) || hides(task.span.last))
         };
         let asked: BTreeSet<usize> = asked.iter().copied().collect();
-        while let Some(wave) = next_wave(tasks, |t| !asked.contains(&t) || pooled[t].is_some(), waits) {
+        while let Some(wave) = next_wave(scene, tasks, |t| !asked.contains(&t) || pooled[t].is_some(), waits) {
             let jobs: Vec<Job> = wave
                 .iter()
                 .map(|&t| job(scene, tasks[t], occluders(scene, tasks, |o| pooled[o].as_deref(), tasks[t])))
@@ -136,9 +137,9 @@ pub(super) fn occluders<'a>(
     pooled: impl Fn(usize) -> Option<&'a Pooled>,
     task: Task,
 ) -> Vec<Vec<Vec<Point>>> {
-    let Task { span, depth, .. } = task;
+    let Task { part, span } = task;
     let on = |frame: FrameNumber| {
-        nearer_contours(scene, tasks, (depth, frame), |o| {
+        nearer_contours(scene, tasks, (part, frame), |o| {
             Some(pooled(o)?.own_points((frame - tasks[o].span.first) as usize))
         })
     };

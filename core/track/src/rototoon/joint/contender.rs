@@ -6,6 +6,7 @@ use crate::shared::drawings::{Drawing, gaps, shown};
 use rototoon_base::geometry::Point;
 use rototoon_base::scene::{FrameNumber, Span};
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -23,6 +24,8 @@ pub struct Contender<'a> {
     pub span: Span,
     /// Depth of the part. Larger is nearer.
     pub depth: f64,
+    /// Its depths on single frames.
+    pub depths: &'a BTreeMap<FrameNumber, f64>,
     /// Whether the part can hide others: its contour is closed.
     pub hides: bool,
     /// The span's drawings.
@@ -37,6 +40,12 @@ impl Contender<'_> {
     /// The part's control points at both keys, in working pixels.
     pub fn keys(&self) -> [&[Point]; 2] {
         [0, self.pools.len() - 1].map(|d| &self.pools[d][0].points[..])
+    }
+
+    /// Whether this contender is nearer than another one on a frame.
+    pub fn is_nearer(&self, other: &Contender, frame: FrameNumber) -> bool {
+        let depth = |contender: &Contender| contender.depths.get(&frame).copied().unwrap_or(contender.depth);
+        depth(self) > depth(other)
     }
 
     /// The drawings that begin after a gap.
@@ -73,8 +82,8 @@ impl Contender<'_> {
         shown(self.drawings, [first, last].map(|frame| (frame - self.span.first) as usize))
     }
 
-    /// The order of contenders: from near to far, then by span, then by what is drawn on their keys. Two that are equal in all are
-    /// the same.
+    /// The order of contenders: from near to far, then by span, then by what is drawn on their keys, then by their depths on
+    /// single frames. Two that are equal in all are the same.
     pub fn order(&self, other: &Self) -> Ordering {
         let places = |contender: &Self| -> Vec<f64> {
             contender.keys().into_iter().flatten().flat_map(|point| [point.x, point.y]).collect()
@@ -84,7 +93,11 @@ impl Contender<'_> {
             let differs = own.iter().zip(&theirs).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
             differs.unwrap_or(own.len().cmp(&theirs.len()))
         };
-        other.depth.total_cmp(&self.depth).then(self.span.cmp(&other.span)).then_with(by_places)
+        let by_depths = || {
+            let of = |contender: &Self| contender.depths.iter().map(|(&f, &depth)| (f, depth)).collect::<Vec<_>>();
+            of(self).partial_cmp(&of(other)).unwrap_or(Ordering::Equal)
+        };
+        other.depth.total_cmp(&self.depth).then(self.span.cmp(&other.span)).then_with(by_places).then_with(by_depths)
     }
 
     /// The first frame of each drawing.

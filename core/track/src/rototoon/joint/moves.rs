@@ -21,7 +21,7 @@ pub(super) const LEAST_GAIN: f64 = 1e-9;
 
 /// A move: new paths for one contender or for two.
 pub struct Move {
-    /// The contenders: one, or a far and a near one with the same drawings.
+    /// The contenders: one, or two with the same drawings of which one hides the other.
     pub who: Vec<usize>,
     /// The contenders whose choices the result depends on, with those of the move itself.
     pub seen: Vec<usize>,
@@ -99,7 +99,7 @@ impl Scene<'_> {
             known.cloned().unwrap_or_else(|| {
                 let costs = match of.who[..] {
                     [c] => self.costs((c, d), &states[0], paths),
-                    [far, near] => self.pair_costs([far, near], d, &states, paths),
+                    [far, near] => self.pair_costs([far, near], d, [&states[0], &states[1]], paths),
                     _ => Vec::new(),
                 };
                 Arc::new(Table { at: changes.count, states, costs })
@@ -179,10 +179,27 @@ impl Scene<'_> {
         states.iter().zip(costs).map(|(&h, cost)| Candidate { cost, points: points(h) }).collect()
     }
 
+    /// Costs of all pairs of states of two contenders on a drawing. The second one's state is the inner index. The
+    /// first one may be the nearer one there.
+    pub(super) fn pair_costs(&self, who: [usize; 2], d: usize, states: [&[usize]; 2], paths: &Paths) -> Vec<f64> {
+        let ([a, b], [of_a, of_b]) = (who, states);
+        let frame = self.contenders[a].frame_of(d);
+        if !self.contenders[a].is_nearer(&self.contenders[b], frame) {
+            return self.costs_in_depth(who, d, states, paths);
+        }
+        let costs = self.costs_in_depth([b, a], d, [of_b, of_a], paths);
+        (0..of_a.len()).flat_map(|i| costs.iter().skip(i).step_by(of_a.len())).copied().collect()
+    }
+
     /// Costs of all pairs of states of a far and a near contender on a drawing. The near one's state is the inner
     /// index.
-    fn pair_costs(&self, [far, near]: [usize; 2], d: usize, states: &[Vec<usize>], paths: &Paths) -> Vec<f64> {
-        let [of_far, of_near] = [&states[0][..], &states[1]];
+    fn costs_in_depth(
+        &self,
+        [far, near]: [usize; 2],
+        d: usize,
+        [of_far, of_near]: [&[usize]; 2],
+        paths: &Paths,
+    ) -> Vec<f64> {
         // The samples of the far one that are hidden depend on the pair, so its own fit is added in the table below.
         let behind = self.looks_behind((far, d), of_far, paths, Some(near));
         let bonds = self.bonds_of((far, d), of_far, paths, Some(near));

@@ -12,7 +12,8 @@ use crate::rototoon::propagate::Model;
 use crate::shared::drawings::Drawing;
 use proptest::prelude::*;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::Span;
+use rototoon_base::scene::{FrameNumber, Span};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A part: its drawings on five frames, its models, and its hypotheses.
@@ -20,13 +21,14 @@ struct Cast {
     drawings: Vec<Drawing>,
     models: [Model; 2],
     pools: Arc<Pools>,
+    depths: BTreeMap<FrameNumber, f64>,
 }
 
 /// Shift and look of each hypothesis on a drawing.
 type Places = Vec<(f64, f64)>;
 
-/// A bar near the others. Some parts hold a drawing for two frames.
-fn cast((x, held): (f64, bool), places: &[Places; 3]) -> Cast {
+/// A bar near the others. Some parts hold a drawing for two frames, and some have another depth from a frame on.
+fn cast((x, held, from): (f64, bool, FrameNumber), places: &[Places; 3]) -> Cast {
     let shape = turned(&bar(), 0.0, Point::new(200.0 + x, 200.0));
     let models = [0, 1].map(|_| model(&shape, (0.0, Point::new(3.0, 0.0))));
     let frames = if held { vec![(0, 0), (1, 2), (3, 3), (4, 4)] } else { (0..5).map(|i| (i, i)).collect() };
@@ -38,14 +40,15 @@ fn cast((x, held): (f64, bool), places: &[Places; 3]) -> Cast {
         d => places[d % 3].iter().map(|&(x, look)| at(x, look)).collect(),
     };
     let pools = Arc::new((0..=last).map(pool).collect());
-    Cast { drawings, models, pools }
+    let depths = (from..12).map(|frame| (frame, 1.5 - 0.1 * x)).collect();
+    Cast { drawings, models, pools, depths }
 }
 
 fn contenders(casts: &[Cast]) -> Vec<Contender<'_>> {
     let mut all = Vec::new();
-    for (part, Cast { drawings, models, pools }) in casts.iter().enumerate() {
+    for (part, Cast { drawings, models, pools, depths }) in casts.iter().enumerate() {
         let (span, depth) = (Span { first: 7, last: 11 }, part as f64);
-        all.push(Contender { part, span, depth, hides: true, drawings, pools, models });
+        all.push(Contender { part, span, depth, depths, hides: true, drawings, pools, models });
     }
     all
 }
@@ -82,6 +85,18 @@ fn alone(scene: &Scene, c: usize, state: State, paths: &Paths, but: Option<usize
     cost
 }
 
+/// Cost of the states of two contenders with the same drawings, without motion. For the others, each of them is beside the other one's
+/// place on the paths.
+fn both(scene: &Scene, [a, b]: [(usize, State); 2], paths: &Paths) -> f64 {
+    let places = with(&with(paths, a), b);
+    let rest = |(c, state): (usize, State), other: usize| {
+        alone(scene, c, state, paths, Some(other)) - scene.look(c, state, &with(paths, (c, state)))
+    };
+    let between = scene.bonds_between((a.0, a.1.0), &[a.1.1], (b.0, b.1.0), &[b.1.1]);
+    let looks = [a, b].map(|(c, state)| scene.look(c, state, &places));
+    looks.iter().sum::<f64>() + rest(a, b.0) + rest(b, a.0) + between[0]
+}
+
 /// The joint choice, one move after the other.
 fn one_by_one(scene: &Scene, moves: &[Vec<usize>], mut paths: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     for _ in 0..ROUNDS {
@@ -108,7 +123,7 @@ proptest! {
 
     #[test]
     fn tables_hold_what_each_state_costs(
-        parts in prop::collection::vec((-40.0f64..40.0, any::<bool>()), 3..5),
+        parts in prop::collection::vec((-40.0f64..40.0, any::<bool>(), 7i32..16), 3..5),
         all in prop::collection::vec(places(), 5),
         choice in 0usize..100,
     ) {
@@ -143,6 +158,11 @@ proptest! {
                         let plain = scene.look(c, (d, h), &with(&paths, (near, (d, n))));
                         prop_assert!((look - plain).abs() < 1e-12);
                     }
+                    let pairs = scene.pair_costs([c, near], d, [&states, &others], &paths);
+                    for (k, cost) in pairs.into_iter().enumerate() {
+                        let plain = both(&scene, [(c, (d, k / others.len())), (near, (d, k % others.len()))], &paths);
+                        prop_assert!((cost - plain).abs() < 1e-12, "{cost}, plainly {plain}");
+                    }
                 }
             }
         }
@@ -150,7 +170,7 @@ proptest! {
 
     #[test]
     fn what_moves_keep_does_not_change_the_choice(
-        parts in prop::collection::vec((-40.0f64..40.0, any::<bool>()), 2..6),
+        parts in prop::collection::vec((-40.0f64..40.0, any::<bool>(), 7i32..16), 2..6),
         all in prop::collection::vec(places(), 6),
     ) {
         let casts: Vec<Cast> = parts.iter().zip(&all).map(|(part, places)| cast(*part, places)).collect();

@@ -2,7 +2,8 @@
 //!
 //! For every pair of a far and a near part, on every drawing, and for every pair of their hypotheses there is a bit
 //! mask of the far part's hidden samples. The near part hides the inside of its contour. The masks make the cost of a
-//! choice of hypotheses quick to compute. They are kept for the next call as long as the pools are the same.
+//! choice of hypotheses quick to compute. They are kept for the next call as long as the pools are the same, and each part is
+//! in front of the other on the same drawings.
 //!
 //! Limit: the contours are drawn with pixels of 3 × 3 working pixels.
 
@@ -104,8 +105,9 @@ pub struct Memory {
 /// A far and a near contender, and their masks. `None` if the near one hides no sample.
 type Fresh = ((usize, usize), Option<Arc<PairMasks>>);
 
-/// The pools of a far and a near contender, and their masks. `None` if the near one hides no sample.
-type PairCast = ([Arc<Pools>; 2], Option<Arc<PairMasks>>);
+/// The pools of a far and a near contender, on which drawings of the far one the other one is nearer, and their masks. `None` if the
+/// near one hides no sample.
+type PairCast = ([Arc<Pools>; 2], Vec<bool>, Option<Arc<PairMasks>>);
 
 impl Memory {
     /// Forgets the shadows of other pools than these.
@@ -157,8 +159,11 @@ impl Shadows {
             .flat_map(|&f| index.iter().map(move |&n| (f, n)))
             .filter(|&p| may_hide(contenders, p))
             .collect();
-        let unknown: Vec<(usize, usize)> =
-            pairs.iter().copied().filter(|p| !memory.masks.contains_key(&pair(p))).collect();
+        let is_known = |p: &(usize, usize)| {
+            let known = memory.masks.get(&pair(p));
+            known.is_some_and(|(_, known, _)| *known == behind(contenders, *p))
+        };
+        let unknown: Vec<(usize, usize)> = pairs.iter().copied().filter(|p| !is_known(p)).collect();
         let silhouettes: Vec<Silhouettes> = index
             .par_iter()
             .with_max_len(1)
@@ -173,10 +178,11 @@ impl Shadows {
         let mut fresh: BTreeMap<_, _> = fresh.into_iter().flatten().collect();
         let mut masks = vec![vec![None; contenders.len()]; contenders.len()];
         for parts in pairs {
-            let found = memory.masks.get(&pair(&parts)).map(|(_, masks)| masks.clone());
-            let found = found.or_else(|| fresh.remove(&parts)).flatten();
+            let known = || memory.masks.get(&pair(&parts)).and_then(|(.., masks)| masks.clone());
+            let found = fresh.remove(&parts).unwrap_or_else(known);
             let pools = [parts.0, parts.1].map(|c| contenders[c].pools.clone());
-            memory.masks.insert(pair(&parts), (pools, found.clone()));
+            let behind = behind(contenders, parts);
+            memory.masks.insert(pair(&parts), (pools, behind, found.clone()));
             masks[parts.0][parts.1] = found;
         }
         for (c, costs) in contenders.iter().zip(&costs) {
@@ -197,10 +203,12 @@ impl Shadows {
         self.masks.iter().flatten().all(Option::is_none)
     }
 
-    /// The pairs (far, near) of contenders in which the near one hides some sample of the far one.
+    /// The pairs (far, near) of contenders in which the near one hides some sample of the far one. Two that hide each other,
+    /// on different drawings, are one pair.
     pub fn pairs(&self) -> Vec<(usize, usize)> {
         let of = |far: usize| self.in_front[far].iter().map(move |&near| (far, near));
-        (0..self.in_front.len()).flat_map(of).collect()
+        let once = |&(far, near): &(usize, usize)| far < near || !self.in_front[near].contains(&far);
+        (0..self.in_front.len()).flat_map(of).filter(once).collect()
     }
 
     /// The samples of a far hypothesis that a near hypothesis hides, as a bit mask. `parts` is (far, near).
@@ -246,10 +254,17 @@ fn silhouettes(c: &Contender) -> Silhouettes {
     c.pools.iter().map(of_pool).collect()
 }
 
-/// Whether the second contender of the pair is nearer than the first one, shares frames with it and can hide others.
-fn may_hide(contenders: &[Contender], (far, near): (usize, usize)) -> bool {
+/// Whether the second contender of the pair is nearer than the first one on a drawing, shares frames with it and can hide others.
+fn may_hide(contenders: &[Contender], pair: (usize, usize)) -> bool {
+    let (far, near) = (&contenders[pair.0], &contenders[pair.1]);
+    let meet = near.span.first < far.span.last && far.span.first < near.span.last;
+    near.hides && meet && behind(contenders, pair).contains(&true)
+}
+
+/// By drawing of the first contender of the pair: whether the second one is nearer there.
+fn behind(contenders: &[Contender], (far, near): (usize, usize)) -> Vec<bool> {
     let (far, near) = (&contenders[far], &contenders[near]);
-    near.hides && near.depth > far.depth && near.span.first < far.span.last && far.span.first < near.span.last
+    far.frames().map(|frame| near.is_nearer(far, frame)).collect()
 }
 
 /// The masks on the contender `f` by the nearer contenders, for the pairs in which it is the far one.
@@ -261,8 +276,12 @@ fn masks_on(contenders: &[Contender], silhouettes: &[Silhouettes], pairs: &[(usi
     }
     let mut found: Vec<PairMasks> = nearer.iter().map(|_| PairMasks::new()).collect();
     for (d, pool) in far.pools.iter().enumerate() {
-        let near_drawings: Vec<Option<usize>> =
-            nearer.iter().map(|&n| contenders[n].drawing_at(far.frame_of(d))).collect();
+        let frame = far.frame_of(d);
+        let nearer_there = |&n: &usize| {
+            let near = contenders[n].drawing_at(frame)?;
+            contenders[n].is_nearer(far, frame).then_some(near)
+        };
+        let near_drawings: Vec<Option<usize>> = nearer.iter().map(nearer_there).collect();
         for ((by, &n), near) in found.iter_mut().zip(&nearer).zip(&near_drawings) {
             by.push(Masks::new(near.map_or(0, |near| silhouettes[n][near].len())));
         }

@@ -3,7 +3,7 @@
 use super::companion::{self, Companions};
 use super::lead::{Lead, leads};
 use super::margin::LARGEST;
-use super::shadow::Memory;
+use super::shadow::{Memory, Shadows};
 use super::{Bonds, Contender, choose, jumps, margins, tie};
 use crate::rototoon::lattice::align::Aligner;
 use crate::rototoon::lattice::mesh::Mesh;
@@ -15,7 +15,8 @@ use crate::rototoon::select::Smoothness;
 use crate::shared::drawings::Drawing;
 use crate::shared::features::Features;
 use rototoon_base::geometry::Point;
-use rototoon_base::scene::{Raster, Span};
+use rototoon_base::scene::{FrameNumber, Raster, Span};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A bar of 20 × 80 working pixels. The origin is the middle of its upper end.
@@ -27,6 +28,9 @@ pub fn turned(shape: &[Point], degrees: f64, to: Point) -> Vec<Point> {
     let turn = Point::from_angle(f64::to_radians(degrees));
     shape.iter().map(|&p| turn.rotate(p) + to).collect()
 }
+
+/// No depths on single frames.
+pub static NO_DEPTHS: BTreeMap<FrameNumber, f64> = BTreeMap::new();
 
 /// A model of a shape on plain paper. `there` is its rotation and shift to the other key.
 pub fn model(shape: &[Point], there: (f64, Point)) -> Model {
@@ -78,6 +82,7 @@ fn two_parts_do_not_take_the_same_place() {
             part,
             span,
             depth,
+            depths: &NO_DEPTHS,
             hides: true,
             drawings: &drawings,
             pools,
@@ -102,6 +107,42 @@ fn two_parts_do_not_take_the_same_place() {
 }
 
 #[test]
+fn who_hides_whom_is_asked_on_each_drawing() {
+    let at = |x: f64| turned(&bar(), 0.0, Point::new(x, 200.0));
+    let still = (0.0, Point::ZERO);
+    let models = [240.0, 200.0].map(|x| [model(&at(x), still), model(&at(x), still)]);
+    let drawings: Vec<Drawing> = (0..4).map(|i| Drawing { first: i, last: i }).collect();
+    let key = |k: usize| vec![hypothesis(&models[k][0], 0.0, Point::ZERO, 0.0)];
+    // On both drawings between the keys nothing is seen of the first part at its place.
+    let unseen = || vec![hypothesis(&models[0][0], 0.0, Point::new(-40.0, 0.0), 0.2)];
+    let pools: [Arc<Pools>; 2] =
+        [Arc::new(vec![key(0), unseen(), unseen(), key(0)]), Arc::new(vec![key(1), key(1), key(1), key(1)])];
+    let mut memory = Memory::default();
+    let mut looks = |depths: &BTreeMap<FrameNumber, f64>| {
+        let contender = |part: usize, depths| Contender {
+            part,
+            span: Span { first: 10, last: 13 },
+            depth: part as f64,
+            depths,
+            hides: true,
+            drawings: &drawings,
+            pools: &pools[part],
+            models: &models[part],
+        };
+        let both = [contender(0, depths), contender(1, &NO_DEPTHS)];
+        let shadows = Shadows::cast(&both, &mut memory);
+        let hidden = |far: usize, d: usize| shadows.mask((far, 1 - far), (d, 0), 0).is_some();
+        ([0, 1].map(|far| [1, 2].map(|d| hidden(far, d))), shadows.pairs())
+    };
+    let always = ([[true, true], [false, false]], vec![(0, 1)]);
+    assert_eq!(looks(&NO_DEPTHS), always);
+    // From frame 12 on, which is the third drawing, the first part is in front.
+    let later = ([[true, false], [false, true]], vec![(0, 1)]);
+    assert_eq!(looks(&(12..14).map(|frame| (frame, 2.0)).collect()), later);
+    assert_eq!(looks(&NO_DEPTHS), always, "what is remembered is not taken for another order");
+}
+
+#[test]
 fn the_margin_is_what_another_place_would_cost_more() {
     let models = [model(&bar(), (0.0, Point::ZERO)), model(&bar(), (0.0, Point::ZERO))];
     let drawings = three_drawings();
@@ -113,6 +154,7 @@ fn the_margin_is_what_another_place_would_cost_more() {
         part: 0,
         span: Span { first: 0, last: 2 },
         depth: 0.0,
+        depths: &NO_DEPTHS,
         hides: true,
         drawings: &drawings,
         pools: &pools,
@@ -166,6 +208,7 @@ fn the_hinge_of_a_swinging_limb_is_its_pivot() {
         part,
         span: Span { first: 0, last: 2 },
         depth: part as f64,
+        depths: &NO_DEPTHS,
         hides: true,
         drawings: &drawings,
         pools,
@@ -192,6 +235,7 @@ fn a_further_key_of_a_part_keeps_its_joints() {
         part: 0,
         span: Span { first: 2 * k as i32, last: 2 * k as i32 + 2 },
         depth: 0.0,
+        depths: &NO_DEPTHS,
         hides: true,
         drawings: &three,
         pools: &limb_pools[k],
@@ -201,6 +245,7 @@ fn a_further_key_of_a_part_keeps_its_joints() {
         part: 1,
         span: Span { first: 0, last: 4 },
         depth: 1.0,
+        depths: &NO_DEPTHS,
         hides: true,
         drawings: &five,
         pools: &body_pools,
@@ -227,8 +272,16 @@ fn the_jump_of_a_stretch_is_measured_on_the_best_hypotheses() {
         };
         let pools: Arc<Pools> = Arc::new(places.map(pool).to_vec());
         let span = Span { first: 0, last: 4 };
-        let alone =
-            Contender { part: 0, span, depth: 0.0, hides: true, drawings: &drawings, pools: &pools, models: &models };
+        let alone = Contender {
+            part: 0,
+            span,
+            depth: 0.0,
+            depths: &NO_DEPTHS,
+            hides: true,
+            drawings: &drawings,
+            pools: &pools,
+            models: &models,
+        };
         jumps::measured(&[alone])
     };
     assert!(jump([0.0, 10.0, 20.0, 30.0, 40.0]) < 1e-9, "even motion has none");
@@ -253,8 +306,16 @@ fn with_head_and_eye<T>(step: Point, more: Point, then: impl Fn(&[Contender]) ->
     let head_pools = Arc::new(vec![key(&head, 0), head_there, key(&head, 1)]);
     let eye_pools = Arc::new(vec![key(&eye, 0), eye_there, key(&eye, 1)]);
     let (drawings, span) = (three_drawings(), Span { first: 0, last: 2 });
-    let contender =
-        |part, pools, models| Contender { part, span, depth: 0.0, hides: true, drawings: &drawings, pools, models };
+    let contender = |part, pools, models| Contender {
+        part,
+        span,
+        depth: 0.0,
+        depths: &NO_DEPTHS,
+        hides: true,
+        drawings: &drawings,
+        pools,
+        models,
+    };
     then(&[contender(0, &head_pools, &head), contender(1, &eye_pools, &eye)])
 }
 
@@ -338,6 +399,7 @@ fn a_further_key_of_a_part_keeps_its_companions() {
         part: 1,
         span: Span { first: 0, last: 4 },
         depth: 0.0,
+        depths: &NO_DEPTHS,
         hides: true,
         drawings: &five,
         pools: &heads,
@@ -345,7 +407,16 @@ fn a_further_key_of_a_part_keeps_its_companions() {
     };
     let half = |k: usize| {
         let span = Span { first: 2 * k as i32, last: 2 * k as i32 + 2 };
-        Contender { part: 0, span, depth: 0.0, hides: true, drawings: &three, pools: &eyes[k], models: &eye }
+        Contender {
+            part: 0,
+            span,
+            depth: 0.0,
+            depths: &NO_DEPTHS,
+            hides: true,
+            drawings: &three,
+            pools: &eyes[k],
+            models: &eye,
+        }
     };
     let all = [half(0), half(1), whole];
     let bonds = Bonds {

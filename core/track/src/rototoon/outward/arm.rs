@@ -6,7 +6,8 @@
 //!    complete picture.
 //!    So it is where they are on the place of another part, and these are dropped if anything else is found.
 //!    So it is behind frames on which the part is absent. There a jump costs nothing.
-//! 3. If the artist corrected the drawing, every hypothesis is moved to the corrections.
+//! 3. If the artist corrected the drawing, every hypothesis is moved to the corrections. Turned starts are tried too, but not for a
+//!    centre near the part: that says where the part is, and not how it is turned.
 //! 4. The path of least cost over the last drawings is chosen again. It shows whether the part is still trusted.
 //!
 //! At the end, late findings are carried back: the chosen pose of each drawing goes to the drawing before, as long as
@@ -18,6 +19,7 @@ use super::trust::{LEAST_INSIDE, PATIENCE, Sureness};
 use crate::contract::error::TrackError;
 use crate::contract::job::Correction;
 use crate::contract::tracking::Ending;
+use crate::rototoon::corrected::is_far;
 use crate::rototoon::lattice::anchors::Anchors;
 use crate::rototoon::lattice::texture::{Cover, in_picture};
 use crate::rototoon::pool::{Hypothesis, is_new};
@@ -334,11 +336,12 @@ impl Growing<'_> {
         let (model, scenery) = (self.ground.model, seen.scenery());
         let settler = model.settler(&scenery);
         let settled = |nodes: &[Point]| model.measured(&scenery, settler.settle(nodes));
+        let turns: &[f64] = if self.is_exact_place(seen, &pool[0]) { &[] } else { &TURNS };
         let mut starts: Vec<Pose> = Vec::new();
         for h in pool {
             starts.push(model.drawn(&scenery, &h.pose.nodes, &h.differences));
             starts.push(settled(&h.pose.nodes));
-            let turned = TURNS.iter().map(|degrees| seen.anchors.turned(&h.pose.nodes, degrees.to_radians()));
+            let turned = turns.iter().map(|degrees| seen.anchors.turned(&h.pose.nodes, degrees.to_radians()));
             starts.extend(turned.map(|nodes| settled(&nodes)));
         }
         starts.sort_by(|a, b| a.energy.total_cmp(&b.energy));
@@ -357,6 +360,14 @@ impl Growing<'_> {
             }
         }
         found
+    }
+
+    /// Whether the correction of a drawing is only a centre near the part, which was carried there. It says where the part is,
+    /// and nothing of its rotation.
+    fn is_exact_place(&self, seen: &Seen, carried: &Hypothesis) -> bool {
+        let (size, scale) = (self.ground.model.texture.mesh.size, self.ground.scale);
+        let center = seen.correction.as_ref().filter(|correction| correction.pins.is_empty()).and_then(|c| c.center);
+        center.is_some_and(|center| !is_far(&carried.points, center / scale, size))
     }
 
     /// Chooses the path over the last drawings, and returns the confidence on the last one.

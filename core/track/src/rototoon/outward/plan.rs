@@ -4,6 +4,9 @@
 //! from the nearest to the farthest, and parts of the same depth run in parallel. A result is reused if its job is the
 //! same as before.
 //!
+//! Parts that change their places in the order may hide each other, on different frames. One of them goes first then, without
+//! what the other one hides of it, and is followed once more when that is known.
+//!
 //! Where parts came to the place of others ([`apart`](super::apart)), all are followed a second time, without these places.
 
 use super::apart::{Came, came};
@@ -11,6 +14,7 @@ use super::finish::track;
 use super::{OutwardJob, OutwardTrack};
 use crate::contract::error::TrackError;
 use crate::contract::job::{Correction, SpanSummary, Termination};
+use crate::contract::tasks::{first_of, is_nearer, is_nearer_on_any};
 use crate::contract::tracking::{JobReport, PartTrack, Tracking};
 use crate::rototoon::mechanisms::Mechanisms;
 use crate::rototoon::stage::Kit;
@@ -24,10 +28,14 @@ use std::sync::Mutex;
 /// The results of the parts with one key, by the name of the part.
 #[derive(Default)]
 pub struct Memory {
-    known: BTreeMap<String, (OutwardJob, OutwardTrack)>,
+    known: Results,
     /// The results of the second run, if there was one ([`apart`](super::apart)).
-    again: BTreeMap<String, (OutwardJob, OutwardTrack)>,
+    again: Results,
+    /// The results of the first and of the second run for parts that went before one that hides them, when they were followed once more.
+    later: [Results; 2],
 }
+
+type Results = BTreeMap<String, (OutwardJob, OutwardTrack)>;
 
 /// By part and frame: contours of other parts on whose place it cannot be.
 type Taken = BTreeMap<usize, BTreeMap<FrameNumber, Vec<Vec<Point>>>>;
@@ -48,8 +56,10 @@ impl Memory {
     ) -> Result<(), TrackError> {
         let subjects = subjects(scene);
         let names: BTreeSet<&str> = subjects.iter().map(|&p| scene.parts[p].name.as_str()).collect();
-        self.known.retain(|name, _| names.contains(name.as_str()));
-        self.again.retain(|name, _| names.contains(name.as_str()));
+        let [later, later_again] = &mut self.later;
+        for results in [&mut self.known, &mut self.again, later, later_again] {
+            results.retain(|name, _| names.contains(name.as_str()));
+        }
         let counter = Counter { listener: kit.progress, done: Mutex::new(0), all: subjects.len() };
         self.follow(Kit { progress: &counter, ..kit }, scene, (&subjects, &Taken::new()), tracking, &counter)?;
         let came = came(scene, tracking, &subjects);
@@ -70,27 +80,49 @@ impl Memory {
         tracking: &mut Tracking,
         counter: &Counter,
     ) -> Result<(), TrackError> {
-        for wave in waves(scene, subjects) {
-            let jobs: Vec<(usize, OutwardJob)> =
-                wave.iter().map(|&p| (p, job(scene, tracking, p, taken.get(&p)))).collect();
-            let results: Vec<Result<(OutwardTrack, bool), TrackError>> = jobs
-                .par_iter()
-                .map(|(_, job)| {
-                    let known = [&self.known, &self.again].into_iter().filter_map(|memory| memory.get(&job.name));
-                    let result = match known.into_iter().find(|(known, _)| known == job) {
-                        Some((_, result)) => (result.clone(), false),
-                        None => (track(Kit { mechanisms: Mechanisms::default(), ..kit }, job)?, true),
-                    };
-                    counter.finished()?;
-                    Ok(result)
-                })
-                .collect();
-            for ((p, job), result) in jobs.into_iter().zip(results) {
-                let (result, solved) = result?;
-                put(tracking, p, &result, solved);
-                let memory = if taken.is_empty() { &mut self.known } else { &mut self.again };
-                memory.insert(job.name.clone(), (job, result));
-            }
+        let (waves, early) = waves(scene, subjects);
+        for wave in waves {
+            self.follow_all(kit, scene, (&wave, taken, false), tracking, counter)?;
+        }
+        for p in early {
+            self.follow_all(kit, scene, (&[p], taken, true), tracking, counter)?;
+        }
+        Ok(())
+    }
+
+    /// Follows some parts in parallel, for the first time or `later`.
+    fn follow_all(
+        &mut self,
+        kit: Kit,
+        scene: &Scene,
+        (wave, taken, later): (&[usize], &Taken, bool),
+        tracking: &mut Tracking,
+        counter: &Counter,
+    ) -> Result<(), TrackError> {
+        let jobs: Vec<(usize, OutwardJob)> =
+            wave.iter().map(|&p| (p, job(scene, tracking, p, taken.get(&p)))).collect();
+        let results: Vec<Result<(OutwardTrack, bool), TrackError>> = jobs
+            .par_iter()
+            .map(|(_, job)| {
+                let known = [&self.known, &self.again, &self.later[0], &self.later[1]].into_iter();
+                let mut known = known.filter_map(|memory| memory.get(&job.name));
+                let result = match known.find(|(known, _)| known == job) {
+                    Some((_, result)) => (result.clone(), false),
+                    None => (track(Kit { mechanisms: Mechanisms::default(), ..kit }, job)?, true),
+                };
+                counter.finished()?;
+                Ok(result)
+            })
+            .collect();
+        for ((p, job), result) in jobs.into_iter().zip(results) {
+            let (result, solved) = result?;
+            put(tracking, p, &result, solved);
+            let memory = match (later, taken.is_empty()) {
+                (false, true) => &mut self.known,
+                (false, false) => &mut self.again,
+                (true, first) => &mut self.later[usize::from(!first)],
+            };
+            memory.insert(job.name.clone(), (job, result));
         }
         Ok(())
     }
@@ -113,12 +145,19 @@ fn taken(tracking: &mut Tracking, came: &Came) -> Taken {
     taken
 }
 
-/// Groups of parts of the same depth, the nearest first.
-fn waves(scene: &Scene, subjects: &[usize]) -> Vec<Vec<usize>> {
-    let depth = |p: usize| scene.parts[p].depth;
-    let mut order = subjects.to_vec();
-    order.sort_by(|&a, &b| depth(b).total_cmp(&depth(a)).then(a.cmp(&b)));
-    order.chunk_by(|&a, &b| depth(a) == depth(b)).map(<[usize]>::to_vec).collect()
+/// Groups of parts of which none is in front of another, the nearest first; and the parts that went before one that is in
+/// front of them on some frame.
+fn waves(scene: &Scene, subjects: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
+    let footage = scene.footage.first..=scene.footage.last;
+    let waits = |p: usize, o: usize| is_nearer_on_any(scene, o, p, footage.clone());
+    let (mut open, mut waves, mut early) = (subjects.to_vec(), Vec::new(), Vec::new());
+    while !open.is_empty() {
+        let wave = first_of(&open, |p| scene.parts[p].depth, waits);
+        open.retain(|p| !wave.contains(p));
+        early.extend(wave.iter().copied().filter(|&p| open.iter().any(|&o| waits(p, o))));
+        waves.push(wave);
+    }
+    (waves, early)
 }
 
 fn job(
@@ -141,7 +180,7 @@ fn job(
     let nearer: Vec<usize> = (0..scene.parts.len())
         .filter(|&o| {
             let other = &scene.parts[o];
-            other.closed && other.depth > part.depth && other.point_count() > 2
+            other.closed && other.point_count() > 2 && is_nearer_on_any(scene, o, p, footage.first..=footage.last)
         })
         .collect();
     // A part that came to the place of a key does not hide it: the artist saw what is there.
@@ -149,8 +188,9 @@ fn job(
         f == frame && !scene.parts[o].keys.contains_key(&f) && on_one_place(contour, &key)
     };
     let contours = |f: FrameNumber| -> Vec<Vec<Point>> {
+        let nearer = nearer.iter().filter(|&&o| is_nearer(scene, o, p, f));
         let on = |&o: &usize| tracking.parts[o].tracks.get(&f).or_else(|| scene.parts[o].keys.get(&f)).map(|c| (o, c));
-        let hides = nearer.iter().filter_map(on).filter(|(o, contour)| !came(*o, f, contour));
+        let hides = nearer.filter_map(on).filter(|(o, contour)| !came(*o, f, contour));
         hides.map(|(_, contour)| contour.clone()).collect()
     };
     let hidden = (footage.first..=footage.last).map(|f| (f, contours(f))).filter(|(_, c)| !c.is_empty());

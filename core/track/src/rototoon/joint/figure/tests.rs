@@ -1,6 +1,6 @@
 //! What is unexplained, on made-up figures.
 
-use super::super::tests::{bar, hypothesis, model, three_drawings, turned};
+use super::super::tests::{NO_DEPTHS, bar, hypothesis, model, three_drawings, turned};
 use super::super::{Bonds, Contender, choose};
 use super::*;
 use crate::rototoon::pool::Pools;
@@ -48,6 +48,7 @@ impl Legs {
             part: k,
             span: Span { first: 0, last: 2 },
             depth: 0.0,
+            depths: &NO_DEPTHS,
             hides: true,
             drawings: &drawings,
             pools: &self.pools[k],
