@@ -8,7 +8,7 @@
 //! on most frames is taken, and what differs from these outlines was edited. Smaller tolerances often give most of the same outlines, so most are not enough to end it. If none gives any,
 //! because another tolerance was chosen, a frame is the same where all joints lie on the file's outline and the paths are no farther from it than on other frames ([`FARTHER`]).
 //!
-//! **Limits.** With a tolerance that is not in the list, edits of about its size are not seen.
+//! **Limits.** With a tolerance that is not in the list, frames may count as edited where one in the list gives other curves, and edits of about its size may not be seen.
 
 use super::compared::Compared;
 use super::near::Near;
