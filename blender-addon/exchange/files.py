@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import os
+import stat
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -181,17 +183,32 @@ def text(folder: str, document: Mapping[str, Any]) -> str:
 
 
 def put(path: str, content: str) -> None:
-    """Writes a file of text. It is complete, or it does not appear."""
+    """Writes a file of text. It is complete, or it does not appear. A link stays one, and a file that is replaced keeps its rights, as with the library."""
+    target = os.path.realpath(path)
     # Renaming asks only who may write into the folder.
-    if os.path.isfile(path) and not (os.access(path, os.W_OK) and os.stat(path).st_mode & 0o222):
+    if os.path.isfile(target) and not (os.access(target, os.W_OK) and os.stat(target).st_mode & 0o222):
         raise Problem(f"Cannot write {path}: it is read-only for this user")
-    unfinished = f"{path}.{os.getpid()}.unfinished"
+    unfinished = f"{target}.{os.getpid()}.unfinished"
     try:
         with open(unfinished, "w", encoding="utf-8", newline="\n") as file:
             file.write(content)
-        os.replace(unfinished, path)
+        if os.path.isfile(target):
+            _keep_rights(target, unfinished)
+        os.replace(unfinished, target)
     except OSError as error:
         raise Problem(f"Cannot write {path}: {error.strerror}") from error
     finally:
         if os.path.exists(unfinished):
             os.remove(unfinished)
+
+
+def _keep_rights(old: str, new: str) -> None:
+    """Gives a file the owner, the group and the mode of another one, as far as this user may: in a shared folder others go on to write it."""
+    known = os.stat(old)
+    if hasattr(os, "chown"):
+        try:
+            os.chown(new, known.st_uid, known.st_gid)
+        except OSError:
+            with suppress(OSError):
+                os.chown(new, -1, known.st_gid)
+    os.chmod(new, stat.S_IMODE(known.st_mode))

@@ -65,7 +65,9 @@ def _empty(ob) -> None:
 
 def _add_part(settings, number: int, entry: dict[str, Any]) -> None:
     part = settings.parts.add()
-    part.number, part.name = number, entry["name"]
+    # A name gets another form here if it has blanks at its ends, and limbs and marks go with it.
+    part.number, part.known_as = number, entry["name"]
+    part.name = entry["name"]
     part.closed, part.depth = bool(entry.get("closed", True)), float(entry.get("depth", 0.0))
     part.count = len(next(iter(entry.get("keys", {}).values()), []))
     part.extra = files.unknown_of_part(entry)

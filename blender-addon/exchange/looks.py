@@ -46,14 +46,20 @@ class Looks:
     planes: dict[str, np.ndarray] = field(default_factory=dict)
     """The artist's points by the layer of contours on which they are. Contours of a document come onto their plane."""
 
+    def look_of(self, name: str) -> Look | None:
+        """The look of a part of a document. Blender has names without the blanks at their ends."""
+        return self.parts.get(name) or self.parts.get(name.strip())
+
     def layer_of(self, name: str, otherwise: str) -> str:
         """The layer of a part."""
-        return self.parts[name].layer if name in self.parts else otherwise
+        look = self.look_of(name)
+        return otherwise if look is None else look.layer
 
     def rows(self, strokes: Iterable[tuple[str, int, int]], picture: int) -> Iterator[tuple[str, np.ndarray]]:
         """The attributes of strokes on a picture, with defaults where a part has none. A stroke is a part's name, its number and its number of points."""
         strokes = list(strokes)
-        found = [self.parts[name].at(picture, count) if name in self.parts else {} for name, _, count in strokes]
+        looks = [self.look_of(name) for name, *_ in strokes]
+        found = [{} if look is None else look.at(picture, count) for look, (_, _, count) in zip(looks, strokes, strict=True)]
         for name in dict.fromkeys(name for each in found for name in each):
             kind, domain = self.own.get(name) or gp.TYPES[name]
             counts = [count if domain == "POINT" else 1 for _, _, count in strokes]

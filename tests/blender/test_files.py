@@ -412,3 +412,15 @@ def test_a_file_that_may_not_be_written_stays(addon, tmp_path):
     with pytest.raises(addon("blender.errors").Problem, match="batch.json: it is read-only for this user"):
         files.put(str(path), "three")
     assert path.read_text() == "two" and [entry.name for entry in tmp_path.iterdir()] == ["batch.json"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows keeps rights in another way")
+def test_a_file_that_is_written_again_keeps_its_link_and_its_rights(addon, tmp_path):
+    """In a shared folder the others of the group write it too, and a link leads to the disk that has the room."""
+    files, path, link = addon("exchange.files"), tmp_path / "there.json", tmp_path / "batch.json"
+    files.put(str(path), "one")
+    path.chmod(0o664)
+    link.symlink_to(path)
+    files.put(str(link), "two")
+    assert link.is_symlink() and path.read_text() == "two"
+    assert path.stat().st_mode & 0o777 == 0o664

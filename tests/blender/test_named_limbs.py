@@ -132,3 +132,24 @@ def test_a_damaged_list_is_no_error_of_python(addon, doll, tmp_path, field):
     doll.rototoon.extra = json.dumps({**json.loads(doll.rototoon.extra), field: [None, 3, [], "arm"]})
     doll.rototoon.parts[0].name = "leg"
     assert exported(tmp_path)[field] == [None, 3, [], "arm"]
+
+
+def test_names_with_blanks_at_their_ends_keep_limbs_and_marks(addon, doll, tmp_path):
+    """Other programs may give parts such names; Blender has them without the blanks."""
+    leg, body, *_ = doll.rototoon.parts
+    bpy.ops.rototoon.depth_mark(front=leg.name, behind=body.name)
+    document = exported(tmp_path)
+    blank = json.loads(json.dumps(document).replace(json.dumps(leg.name), json.dumps(f" {leg.name} ")))
+    assert blank["parts"] != document["parts"] and blank["limbs"] != document["limbs"]
+    (tmp_path / "blank.json").write_text(json.dumps(blank))
+    assert bpy.ops.rototoon.import_document(filepath=str(tmp_path / "blank.json")) == {"FINISHED"}
+    back = exported(tmp_path)
+    assert [back[field] for field in ("limbs", "depth_marks")] == [document[field] for field in ("limbs", "depth_marks")]
+    assert [part["name"] for part in back["parts"]] == [part["name"] for part in document["parts"]]
+
+
+def test_a_part_with_blanks_in_its_name_keeps_its_look(addon, doll, tmp_path):
+    looks = addon("exchange.looks")
+    known = looks.Looks({"arm": looks.Look("Contours Arm", np.array([0]), {}, {})})
+    assert [known.layer_of(name, "Contours") for name in ("arm", " arm ", "leg")] == ["Contours Arm", "Contours Arm", "Contours"]
+    assert list(known.rows([(" arm ", 1, 3), ("leg", 2, 3)], 0)) == []

@@ -173,6 +173,33 @@ fn tracked() -> impl Strategy<Value = Scene> {
     scene().prop_filter("tracked", |scene| scene.parts.iter().all(|part| !part.tracks.is_empty()))
 }
 
+/// A part that waves, little on most frames and more on the last ones.
+fn waving() -> Part {
+    let mut part = Part { name: "hair".into(), ..Part::default() };
+    for frame in 0..COUNT {
+        let high = if frame < 6 { 0.5 } else { f64::from(frame) };
+        let [a, b] = [(100.0, 100.0), (220.0, 110.0)].map(Point::from);
+        let across = (b - a).perp().normalize();
+        let wave = |t: f64| high * (9.0 * t).sin() * (1.0 - t) * t * 4.0;
+        let path = (0..=40).map(|i| f64::from(i) / 40.0).map(|t| a.lerp(b, t) + across * wave(t)).collect();
+        part.tracks.insert(frame, vec![a, b]);
+        part.curves.insert(frame, vec![path]);
+    }
+    part.keys.insert(0, part.tracks[&0].clone());
+    part
+}
+
+/// On most frames points in a distance, and curves of other tolerances, are the same as those of the file, but not on those with the highest waves.
+#[test]
+fn curves_of_usual_tolerances_that_were_not_edited_change_nothing() {
+    let footage =
+        Footage { pattern: "%d".into(), first: 0, last: COUNT - 1, fps: 24.0, width: 640, height: 360, held: false };
+    let scene = Scene { footage, parts: vec![waving()] };
+    for tolerance in [0.1, 0.25, 0.5, 1.0] {
+        check(&scene, Detail::Bezier(tolerance)).unwrap_or_else(|error| panic!("{tolerance}: {error}"));
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
 

@@ -14,6 +14,7 @@
 //! - `svg_sheet`: style sheets
 //! - `svg_style`: what is hidden or filled
 //! - `svg_transform`: where elements stand
+//! - `svg_unread`: animations that are not read
 //! - `svg_view`: view boxes
 //! - [`silhouette`]: Silhouette shapes
 //! - [`nuke`](mod@nuke): shapes of Nuke's Roto and RotoPaint nodes
@@ -61,6 +62,7 @@ mod svg_selector;
 mod svg_sheet;
 mod svg_style;
 mod svg_transform;
+mod svg_unread;
 mod svg_view;
 mod way;
 

@@ -33,6 +33,7 @@ use super::svg_names::Called;
 use super::svg_outline::{outline, paths};
 use super::svg_style::Styles;
 use super::svg_transform::{Places, joined, moved};
+use super::svg_unread::unread;
 use super::svg_view::{View, nested, viewed};
 use super::{ImportError, Shape, Shapes};
 use crate::between::{Keys, form};
@@ -282,6 +283,9 @@ impl<'a> Reader<'a> {
                 "{:?} moves by an animated transformation, which is not read: it stands still",
                 self.called.name(node)
             );
+            self.left_out.push(node, told);
+        }
+        for told in unread(node, &self.called.name(node), self.film) {
             self.left_out.push(node, told);
         }
         if let Some(property) = self.styles.moving(node) {

@@ -74,6 +74,15 @@ pub(super) fn keyed(node: Node, footage: &Footage) -> Result<Option<Keys>, Impor
     Ok(Some(Keys { keys, kept }))
 }
 
+/// Why an element's animation of an attribute cannot be read; `None` if it can, or if there is none.
+pub(super) fn problem(node: Node, attribute: &str, footage: &Footage) -> Option<String> {
+    match animation(node, attribute, footage) {
+        Err(ImportError::Element { message, .. }) => Some(format!("which cannot be read: {message}")),
+        Err(other) => Some(other.to_string()),
+        Ok(_) => None,
+    }
+}
+
 /// The times in which an element is not shown. An animation that cannot be read hides nothing.
 pub(super) fn hidden(node: Node, footage: &Footage) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
@@ -155,7 +164,7 @@ fn animation<'a>(node: Node<'a, 'a>, attribute: &str, footage: &Footage) -> Resu
 }
 
 /// A duration in seconds: a number with a unit or without one, or a clock such as `01:30` or `0:01:30.5`.
-fn seconds(text: &str) -> Option<f64> {
+pub(super) fn seconds(text: &str) -> Option<f64> {
     let text = text.trim();
     let units = [("ms", 1e-3), ("min", 60.0), ("h", 3600.0), ("s", 1.0), ("", 1.0)];
     let counted = || {

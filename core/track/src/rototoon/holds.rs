@@ -224,8 +224,8 @@ impl<'a> View<'a> {
             let Some(&(from, there)) = best.filter(|best| is_other(best.0)) else { continue };
             let Some(shift) = self.same(of, (from, frame), at - there)? else { continue };
             let points: Vec<Point> = track.tracks[&from].iter().map(|&q| q + shift * self.scale).collect();
-            let sure = track.confidence.get(&from).cloned().unwrap_or_default();
-            taken.push((frame, points, sure.into_iter().map(|sure| sure.min(HELD)).collect()));
+            let sure = track.confidence.get(&from).map_or(&[][..], Vec::as_slice);
+            taken.push((frame, points, passed_on(self.rank(p, from), sure)));
         }
         Ok(())
     }
@@ -353,8 +353,28 @@ impl<'a> View<'a> {
     }
 }
 
+/// The confidence of a contour on another frame of its drawing. What the artist made counts there as a key's drawing. What was only found does not, however sure it is:
+/// it says nothing of which of two parts is which.
+fn passed_on((made, _): Rank, sure: &[f64]) -> Vec<f64> {
+    sure.iter().map(|sure| if made > 0 { sure.min(HELD) } else { *sure }).collect()
+}
+
 /// The exact shift at which a region shows the same in both pictures.
 fn held(region: &Region, [a, b]: [&Arc<Features>; 2], shift: Point) -> Option<Point> {
     let shift = if shift == Point::ZERO { shift } else { region.settled(a, b, shift)? };
     region.same(a, b, shift).then_some(shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_the_artist_made_becomes_a_keys_drawing() {
+        let sure = [1.0, 0.998, 0.3];
+        assert_eq!(passed_on((2, 1.0), &sure), [HELD, HELD, 0.3], "a key");
+        assert_eq!(passed_on((1, 0.8), &sure), [HELD, HELD, 0.3], "a correction");
+        assert_eq!(passed_on((0, 0.8), &sure), sure);
+        assert_eq!(passed_on((0, HELD), &[HELD; 3]), [HELD; 3], "a frame that holds a key's drawing");
+    }
 }

@@ -55,9 +55,9 @@ impl Curves {
         let segments = frames.values().next()?.len();
         let mut made: BTreeMap<FrameNumber, Vec<Knot>> = frames.keys().map(|frame| (*frame, Vec::new())).collect();
         let mut counts = Vec::with_capacity(segments);
-        let smooth = smooth_points(&frames, segments, part.closed);
+        let ends = ends(&frames, &smooth_points(&frames, segments, part.closed), tolerance);
         for segment in 0..segments {
-            let segment = Segment::new(&frames, segment, &smooth, tolerance);
+            let segment = Segment::new(&frames, segment, &ends);
             let (count, cubics) = segment.fitted(tolerance);
             counts.push(count);
             for ((knots, cubics), paths) in made.values_mut().zip(cubics).zip(frames.values()) {
@@ -101,13 +101,23 @@ fn joined(paths: &[Vec<Point>], points: &[Point], closed: bool) -> Paths {
     paths.iter().zip(ends).map(join).collect()
 }
 
-/// Whether each control point is smooth. The ends of an open contour are not.
+/// Whether each control point at which a path begins is smooth. The ends of an open contour are not.
 fn smooth_points(frames: &BTreeMap<FrameNumber, Paths>, segments: usize, closed: bool) -> Vec<bool> {
     let smooth = |point: usize| {
         let before = (point + segments - 1) % segments;
-        is_smooth(frames.values().map(|paths| Joint::new(&paths[before], &paths[point % segments])))
+        is_smooth(frames.values().map(|paths| Joint::new(&paths[before], &paths[point])))
     };
-    (0..=segments).map(|point| (closed || (point > 0 && point < segments)) && smooth(point)).collect()
+    (0..segments).map(|point| (closed || point > 0) && smooth(point)).collect()
+}
+
+/// What is known of the handles before and after each control point at which a path begins, on each frame. The last point of an open contour has none
+/// after it, and is as its first point: nothing is known of it.
+fn ends(frames: &BTreeMap<FrameNumber, Paths>, smooth: &[bool], tolerance: f64) -> Vec<Vec<[End; 2]>> {
+    let on = |paths: &Paths, point: usize| {
+        let n = paths.len();
+        Joint::new(&paths[(point + n - 1) % n], &paths[point]).ends(smooth[point], tolerance)
+    };
+    (0..smooth.len()).map(|point| frames.values().map(|paths| on(paths, point)).collect()).collect()
 }
 
 /// One segment on all frames.
@@ -119,16 +129,10 @@ struct Segment<'a> {
 }
 
 impl<'a> Segment<'a> {
-    fn new(frames: &'a BTreeMap<FrameNumber, Paths>, index: usize, smooth: &[bool], tolerance: f64) -> Self {
-        let ends = |paths: &Paths| {
-            let n = paths.len();
-            let own = &paths[index];
-            let [_, first] = Joint::new(&paths[(index + n - 1) % n], own).ends(smooth[index], tolerance);
-            let [last, _] = Joint::new(own, &paths[(index + 1) % n]).ends(smooth[index + 1], tolerance);
-            [first, last]
-        };
+    fn new(frames: &'a BTreeMap<FrameNumber, Paths>, index: usize, ends: &[Vec<[End; 2]>]) -> Self {
         let paths = frames.values().map(|paths| &paths[index][..]).collect();
-        Self { index, paths, ends: frames.values().map(ends).collect() }
+        let [first, last] = [&ends[index], &ends[(index + 1) % ends.len()]];
+        Self { index, paths, ends: first.iter().zip(last).map(|(first, last)| [first[1], last[0]]).collect() }
     }
 
     /// The least number of pieces with which all frames are within the tolerance, and the cubics of each frame.
@@ -139,30 +143,36 @@ impl<'a> Segment<'a> {
             let smooth: Vec<bool> =
                 (1..count).map(|k| is_smooth(pieces.iter().map(|own| Joint::new(&own[k - 1], &own[k])))).collect();
             let last = count >= MOST_PIECES;
-            let of = |frame: usize| cubics(&pieces[frame], self.ends[frame], &smooth, tolerance);
-            let within = |own: &[Fitted]| last || own.iter().all(|cubic| cubic.error <= tolerance);
+            let of = |frame: usize| cubics(&pieces[frame], self.ends[frame], &smooth, tolerance, last);
             // A frame that was too winding before most likely still is.
-            if within(&of(worst)) {
-                let all: Vec<Vec<Fitted>> = (0..pieces.len()).map(of).collect();
-                match all.iter().position(|own| !within(own)) {
-                    None => return (count, all),
-                    Some(frame) => worst = frame,
+            if of(worst).is_some() {
+                let all: Vec<Vec<Fitted>> = (0..pieces.len()).map_while(of).collect();
+                if all.len() == pieces.len() {
+                    return (count, all);
                 }
+                worst = all.len();
             }
             count = (count + 1 + count / 8).min(MOST_PIECES);
         }
     }
 }
 
-/// The cubics of the pieces of a segment on one frame.
-fn cubics(pieces: &Paths, [first, last]: [End; 2], smooth: &[bool], tolerance: f64) -> Vec<Fitted> {
-    let mut ends = vec![first];
-    for (pair, &smooth) in pieces.windows(2).zip(smooth) {
-        ends.extend(Joint::new(&pair[0], &pair[1]).ends(smooth, tolerance));
+/// The cubics of the pieces of a segment on one frame; `None` if one is not within the tolerance, unless these are the `last` pieces that are tried.
+fn cubics(pieces: &Paths, ends: [End; 2], smooth: &[bool], tolerance: f64, last: bool) -> Option<Vec<Fitted>> {
+    let mut found = Vec::with_capacity(pieces.len());
+    let mut start = ends[0];
+    for (k, piece) in pieces.iter().enumerate() {
+        let own = pieces.get(k + 1).map(|after| Joint::new(piece, after).ends(smooth[k], tolerance));
+        let [end, next] = own.unwrap_or([ends[1]; 2]);
+        let cubic = fit(piece, [start, end], tolerance);
+        // Most numbers of pieces are too few, and the first piece that is too far says so.
+        if !last && (cubic.error.is_nan() || cubic.error > tolerance) {
+            return None;
+        }
+        found.push(cubic);
+        start = next;
     }
-    ends.push(last);
-    let (ends, _) = ends.as_chunks::<2>();
-    pieces.iter().zip(ends).map(|(piece, ends)| fit(piece, *ends, tolerance)).collect()
+    Some(found)
 }
 
 /// A path as pieces of equal length.

@@ -18,6 +18,7 @@
 //! another order in the file get depths for that order (`order`).
 
 mod compared;
+mod near;
 mod order;
 mod outline;
 mod written;
@@ -85,8 +86,16 @@ fn merged(scene: &mut Scene, shapes: Vec<Shape>) -> Result<Merged, ImportError> 
     let depth = if nearest.is_finite() { nearest.floor() + 1.0 } else { 0.0 };
     let places = places(&scene.parts, &shapes);
     let named = shapes.iter().map(|shape| shape.name.clone()).collect();
-    let mut into =
-        Into { scene, places, named, depth, found: Vec::new(), merged: Merged::default(), room: Room::all() };
+    let mut into = Into {
+        scene,
+        places,
+        named,
+        depth,
+        found: Vec::new(),
+        merged: Merged::default(),
+        room: Room::all(),
+        chosen: None,
+    };
     shapes.into_iter().try_for_each(|shape| into.take(shape))?;
     let Into { scene, found, mut merged, .. } = into;
     let moved = put(scene, &found);
@@ -125,6 +134,8 @@ struct Into<'a> {
     found: Vec<usize>,
     merged: Merged,
     room: Room,
+    /// The tolerance of the file's Bézier curves, once a shape has told it.
+    chosen: Option<f64>,
 }
 
 /// The points that contours may still have. A shape of a few bytes is shown on all frames of a film.
@@ -159,7 +170,7 @@ impl Into<'_> {
             self.told(new, Change::Beside(name));
             return Ok(());
         }
-        let change = update(part, shape, &self.scene.footage, &mut self.room)?;
+        let change = update(part, shape, &self.scene.footage, (&mut self.room, &mut self.chosen))?;
         self.found.push(place);
         if !kept.is_empty() && change != Change::Replaced {
             self.merged.kept.push((name.clone(), kept));
@@ -246,9 +257,14 @@ fn shown(shape: &Shape, room: &mut Room) -> Result<BTreeMap<FrameNumber, Vec<Poi
 }
 
 /// Brings a part up to date with the shape of its name.
-fn update(part: &mut Part, shape: Shape, footage: &Footage, room: &mut Room) -> Result<Change, ImportError> {
+fn update(
+    part: &mut Part,
+    shape: Shape,
+    footage: &Footage,
+    (room, chosen): (&mut Room, &mut Option<f64>),
+) -> Result<Change, ImportError> {
     let same_border = |part: &mut Part| merge_falloff(&mut part.falloff, shape.falloff);
-    if let Some(compared) = compared_with(part, &shape, footage) {
+    if let Some(compared) = compared_with(part, &shape, footage, chosen) {
         let frames = merge(part, &shape, footage, &*compared, room)?;
         let same = same_border(part) && frames.is_empty();
         return Ok(if same { Change::Nothing } else { Change::Frames(frames) });
@@ -284,8 +300,8 @@ fn is_comparable(part: &Part, shape: &Shape) -> bool {
 }
 
 /// How a part is compared with the shape of its name; `None` if the shape is another one. That is not so if the part has frames of which the file does not
-/// speak, or if both are the same somewhere.
-fn compared_with(part: &Part, shape: &Shape, footage: &Footage) -> Option<Box<dyn Compared>> {
+/// speak, or if both are the same somewhere. `chosen` is as for [`Written::of`].
+fn compared_with(part: &Part, shape: &Shape, footage: &Footage, chosen: &mut Option<f64>) -> Option<Box<dyn Compared>> {
     if is_comparable(part, shape) {
         return Some(Box::new(Points));
     }
@@ -298,7 +314,7 @@ fn compared_with(part: &Part, shape: &Shape, footage: &Footage) -> Option<Box<dy
         |frame: FrameNumber| of_file(shape, frame).is_some_and(|file| outline::Outline.is_same(part, frame, &file));
     let known: Vec<FrameNumber> = (footage.first..=footage.last).filter(spoken).collect();
     let found = known.iter().filter(|&&frame| same(frame)).count();
-    let written = (found < known.len()).then(|| Written::of(part, shape, spoken)).flatten();
+    let written = (found < known.len()).then(|| Written::of(part, shape, spoken, chosen)).flatten();
     if let Some(written) = written {
         return Some(Box::new(written));
     }

@@ -11,6 +11,7 @@
 //! **Limits.** A joint that was moved lies on the new outline, but nobody says where along it.
 
 use super::compared::Compared;
+use super::near::Near;
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_base::scene::{FrameNumber, Part};
 
@@ -82,8 +83,8 @@ fn joined(part: &Part) -> impl Iterator<Item = FrameNumber> + '_ {
 /// Whether a line lies on another one along its whole length.
 pub(super) fn lies_on(line: &[Point], other: &[Point], closed: bool) -> bool {
     let (length, whole) = (polyline::length(line, closed), polyline::length(other, closed));
-    (length - whole).abs() <= SHARE * length.max(1.0)
-        && line.iter().all(|&p| polyline::distance(p, other, closed) <= NEAR)
+    let mut near = Near::new(other, closed);
+    (length - whole).abs() <= SHARE * length.max(1.0) && line.iter().all(|&p| near.is_within(p, NEAR))
 }
 
 /// The paths of a part on a frame; straight ones between its control points if it has none.

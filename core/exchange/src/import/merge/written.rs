@@ -4,12 +4,14 @@
 //! The file does not say which distance or tolerance was chosen. Compared with the paths, frames would be edited that nobody has touched.
 //!
 //! **How.** The export is made again. Points in distances: the distance that gives as many points. Bézier curves: the tolerances that people choose ([`TOLERANCES`]),
-//! from the distance that the file keeps on most frames. The one that gives the file's outlines on most frames is taken, and what differs from these outlines was edited. If none does,
+//! that of the file's other shapes first, and then from the distances that the file keeps. One that gives the file's outlines on all frames ends the search; otherwise the one that does
+//! on most frames is taken, and what differs from these outlines was edited. Smaller tolerances often give most of the same outlines, so most are not enough to end it. If none gives any,
 //! because another tolerance was chosen, a frame is the same where all joints lie on the file's outline and the paths are no farther from it than on other frames ([`FARTHER`]).
 //!
-//! **Limits.** With a tolerance that is not in the list, edits of about its size are not seen.
+//! **Limits.** With a tolerance that is not in the list, frames may count as edited where one in the list gives other curves, and edits of about its size may not be seen.
 
 use super::compared::Compared;
+use super::near::Near;
 use super::outline::{self, NEAR, lies_on};
 use super::{Shape, of_file};
 use crate::export::knot::Knot;
@@ -24,7 +26,7 @@ const TOLERANCES: [f64; 26] = [
     0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.7, 0.75, 0.8, 0.9, 1.0, 1.2, 1.25, 1.5, 2.0, 2.5,
     3.0, 4.0, 5.0, 7.5, 10.0,
 ];
-/// Greatest number of tolerances that are tried for a part.
+/// Greatest number of tolerances that are tried for a part from the distance on most frames on, and below it.
 const MOST_TRIED: usize = 12;
 /// Least and greatest distance of points that is tried, in pixels.
 const SPACINGS: [f64; 2] = [0.2, 2000.0];
@@ -48,7 +50,13 @@ type Outlined = BTreeMap<FrameNumber, Vec<Point>>;
 
 impl Written {
     /// How a part is compared with a file that an export may have written; `None` if none has. The file speaks of the frames for which `spoken` is true.
-    pub fn of(part: &Part, shape: &Shape, spoken: impl Fn(&FrameNumber) -> bool) -> Option<Self> {
+    /// `chosen` is the tolerance of other shapes of the file, and becomes that of this one.
+    pub fn of(
+        part: &Part,
+        shape: &Shape,
+        spoken: impl Fn(&FrameNumber) -> bool,
+        chosen: &mut Option<f64>,
+    ) -> Option<Self> {
         let mut part = part.clone();
         part.curves.retain(|frame, _| spoken(frame));
         let of_file = |frame: &FrameNumber| {
@@ -58,8 +66,12 @@ impl Written {
         };
         let files: Outlined = part.curves.keys().filter_map(of_file).collect();
         let count = files.values().next()?.len();
-        let spaced = spaced(&part, count).filter(|written| same(&part, &files, written) > 0);
-        if let Some(outlines) = spaced.or_else(|| curved(&part, &files)) {
+        // So many points may be those of curves by chance, which lie on some frames where the path is nearly straight.
+        let spaced = spaced(&part, count).map(|written| (same(&part, &files, &written), written));
+        let is_whole = spaced.as_ref().is_some_and(|(same, _)| *same == files.len());
+        let curved = if is_whole { None } else { curved(&part, &files, chosen) };
+        let best = spaced.into_iter().chain(curved).rev().max_by_key(|(same, _)| *same);
+        if let Some((_, outlines)) = best.filter(|(same, _)| *same > 0) {
             return Some(Self { outlines, near: 0.0 });
         }
         let distances = distances(&part, &files);
@@ -108,26 +120,33 @@ fn spaced(part: &Part, count: usize) -> Option<Outlined> {
     None
 }
 
-/// What an export with Bézier curves writes, with the tolerance that gives the outlines of most frames; `None` if none does.
-fn curved(part: &Part, files: &Outlined) -> Option<Outlined> {
-    let least = *distances(part, files).get(files.len() / 4)?;
-    let from = TOLERANCES.partition_point(|tolerance| *tolerance < least - NEAR);
-    let mut best = (0, None);
-    for &tolerance in TOLERANCES[from..].iter().take(MOST_TRIED) {
+/// What an export with Bézier curves writes, with the tolerance that gives the outlines of most frames, and their number; `None` if none does. One that gives
+/// those of all frames is the file's, which is `chosen`.
+fn curved(part: &Part, files: &Outlined, chosen: &mut Option<f64>) -> Option<(usize, Outlined)> {
+    let distances = distances(part, files);
+    // On frames on which little is drawn the distance is far below the tolerance, and on edited ones far above it.
+    let [few, most] = [files.len() / 4, 3 * files.len() / 4].map(|k| distances.get(k).copied());
+    let [few, most] = [few?, most?].map(|least| TOLERANCES.partition_point(|tolerance| *tolerance < least - NEAR));
+    let likely = TOLERANCES[most..].iter().take(MOST_TRIED);
+    let others = likely.chain(TOLERANCES[few..most].iter().rev().take(MOST_TRIED)).copied();
+    let others = others.filter(|tolerance| Some(*tolerance) != *chosen);
+    let mut best: Option<(usize, Outlined)> = None;
+    for tolerance in chosen.iter().copied().chain(others) {
         let outlines = Outlines::new(part, Detail::Bezier(tolerance));
         if !outlines.bent() {
             return None;
         }
         let written = written(part, &outlines);
         let same = same(part, files, &written);
-        if same > best.0 {
-            best = (same, Some(written));
+        if same == files.len() {
+            *chosen = Some(tolerance);
+            return Some((same, written));
         }
-        if 2 * same > files.len() {
-            break;
+        if same > best.as_ref().map_or(0, |(same, _)| *same) {
+            best = Some((same, written));
         }
     }
-    best.1
+    best
 }
 
 /// The distances of a file from a part's paths on all frames, in order.
@@ -169,7 +188,8 @@ fn on_cubic([a, b, c, d]: [Point; 4], t: f64) -> Point {
 fn distance(part: &Part, frame: FrameNumber, file: &[Point]) -> Option<f64> {
     let own = part.outline(frame)?;
     let most = |line: &[Point], other: &[Point]| {
-        line.iter().map(|&p| polyline::distance(p, other, part.closed)).fold(0.0, f64::max)
+        let mut near = Near::new(other, part.closed);
+        line.iter().fold(0.0, |most, &p| near.at_least(p, most))
     };
     Some(most(file, &own).max(most(&own, file)))
 }
