@@ -11,7 +11,8 @@
 //!
 //! Two branches that meet alone are one line whatever their angle: a corner. Other corners: [`crate::corner`].
 //!
-//! Afterwards free ends of the ink that point at each other over a short gap are joined.
+//! Afterwards free ends of the ink that point at each other over a short gap are joined. A dot points nowhere: it may lie in the gap of a line, but two dots
+//! are no line.
 
 use crate::cluster::{Cluster, clusters, points};
 use crate::corner;
@@ -172,7 +173,8 @@ impl Pairing {
         for (k, branch) in graph.branches.iter().enumerate() {
             for side in (0..2).filter(|&side| free(branch, side) && !self.shared[k]) {
                 let end = (k, side);
-                ends.push((end, place(graph, end), outward(graph, end), radius(graph, end)));
+                let direction = if is_dot(branch) { Point::ZERO } else { outward(graph, end) };
+                ends.push((end, place(graph, end), direction, radius(graph, end)));
             }
         }
         ends.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
@@ -181,6 +183,10 @@ impl Pairing {
         for (i, a) in ends.iter().enumerate() {
             let near = |b: &&(End, Point, Point, f64)| b.1.x - a.1.x <= 2.0 * GAP_WIDTHS * widest + GAP_PIXELS;
             for b in ends[i + 1..].iter().take_while(near).filter(|b| b.0.0 != a.0.0) {
+                // Two dots point nowhere: the eyes of a face are no line.
+                if a.2 == Point::ZERO && b.2 == Point::ZERO {
+                    continue;
+                }
                 let way = b.1 - a.1;
                 let reach = gap(2.0 * a.3.min(b.3)) + (a.3 - b.3).abs();
                 let turn = angle(a.2, way).max(angle(b.2, -way));
@@ -207,6 +213,12 @@ pub fn gap(width: f64) -> f64 {
 fn is_stub(graph: &Graph, branch: usize, most: f64) -> bool {
     let branch = &graph.branches[branch];
     branch.ends.contains(&None) && !branch.closed && polyline::length(&branch.points, false) < most
+}
+
+/// Whether a branch is a mark that is hardly longer than broad. The direction of its skeleton is that of its grain.
+fn is_dot(branch: &Branch) -> bool {
+    let radius = branch.radii.iter().copied().fold(0.0, f64::max);
+    branch.ends == [None; 2] && polyline::length(&branch.points, false) < radius + 1.0
 }
 
 /// The pairs of ends that meet.

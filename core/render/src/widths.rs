@@ -8,7 +8,8 @@
 //!
 //! Means are computed at the corners of square cells and are bilinear within them. The cells lie at whole multiples of their
 //! side, so a pixel does not depend on the window. The side grows with the size of the mask: this bounds the cost of a mask
-//! in a picture of any size.
+//! in a picture of any size. It stays below the length of the pieces, since means change over that length: cells that are
+//! wider than pieces would make the border of a small mask boil as it moves over them. A cell of a pixel moves with a mask that moves by whole pixels.
 //!
 //! Limits: at most [`MOST_PIECES`] pieces and one for each segment; the width is even within a piece. A sharp side of a limb
 //! gets a small width from a soft side a few cells away: about a hundredth of it.
@@ -24,7 +25,7 @@ use rototoon_base::scene::Raster;
 /// Number of pieces that a contour is divided into, beside one for each segment.
 pub const MOST_PIECES: usize = 256;
 /// Least side of a cell in pixels.
-const LEAST_CELL: i64 = 4;
+const LEAST_CELL: i64 = 1;
 /// Greatest side of a cell in pixels.
 const MOST_CELL: i64 = 1 << 16;
 /// Most products of cells and pieces of a mask.
@@ -213,6 +214,28 @@ mod tests {
         let row = raster.row(38);
         assert!(row.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 2.0), "{row:?}");
         assert_eq!(widths.raster(window, BOUNDS, &mut || false), None);
+    }
+
+    #[test]
+    fn the_widths_of_a_small_mask_move_with_it() {
+        // A star, whose tips have borders close to each other.
+        let tips: Vec<Point> = (0..5)
+            .map(|k| p(60.0, 50.0) + 35.0 * Point::from_angle(0.8 * f64::from(k) * std::f64::consts::PI))
+            .collect();
+        let moved = |by: (i64, i64)| {
+            let at = |k: usize| tips[k % 5] + p(by.0 as f64, by.1 as f64);
+            let segments: Vec<Vec<Point>> = (0..5).map(|k| vec![at(k), at(k + 1)]).collect();
+            let widths = Widths::new(&pieces(&segments, &[0.0, 4.0, 9.0, 3.0, 0.0])).unwrap();
+            let window = Window { left: by.0, top: by.1, right: 120 + by.0, bottom: 100 + by.1 };
+            let [least, most] = [p(15.0, 5.0), p(105.0, 95.0)].map(|corner| corner + p(by.0 as f64, by.1 as f64));
+            widths.raster(window, Bounds { least, most }, &mut || true).unwrap()
+        };
+        let own = moved((0, 0));
+        for by in [(1, 0), (2, 1), (-3, 7)] {
+            let other = moved(by);
+            let most = own.data().iter().zip(other.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(most < 1e-4, "{by:?}: {most} px");
+        }
     }
 
     #[test]

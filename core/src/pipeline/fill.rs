@@ -250,8 +250,10 @@ impl Painting<'_> {
                 break;
             }
         }
-        let (place, key, missed, next) = best.ok_or_else(|| field(&"fills: found no click"))?;
+        let (place, mut key, missed, next) = best.ok_or_else(|| field(&"fills: found no click"))?;
         self.next = next;
+        // However few regions were clicked: nobody clicks every speck, and paper that nothing is known of would be painted on all other drawings.
+        key.page.leave_paper(&mut key.paint);
         Ok((place, key, missed))
     }
 

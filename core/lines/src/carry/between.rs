@@ -65,20 +65,19 @@ pub fn between<E>(
     next: &mut usize,
 ) -> Result<(Vec<Vec<Tracked>>, Key), E> {
     let mut forwards: Vec<Vec<Tracked>> = Vec::with_capacity(count);
+    // The last drawing that shows any strokes, and these.
     let mut before: Option<Drawing> = None;
-    let all = first.all();
-    let mut onward = |place: usize, before: &Option<Drawing>, last: Option<&Vec<Tracked>>| {
-        let drawing = look(place)?;
-        let from = before.as_ref().unwrap_or(&first.drawing);
-        let carried = carry(from, last.unwrap_or(&all), &drawing, next);
-        Ok((drawing, carried))
-    };
+    let mut last = first.all();
     for place in 1..=count {
-        let (drawing, carried) = onward(place, &before, forwards.last())?;
+        let drawing = look(place)?;
+        let carried = carry(before.as_ref().unwrap_or(&first.drawing), &last, &drawing, next);
+        if !carried.is_empty() {
+            (before, last) = (Some(drawing), carried.clone());
+        }
         forwards.push(carried);
-        before = Some(drawing);
     }
-    let (drawing, came) = onward(count + 1, &before, forwards.last())?;
+    let drawing = look(count + 1)?;
+    let came = carry(before.as_ref().unwrap_or(&first.drawing), &last, &drawing, next);
     drop(before);
     bound(first, (forwards, came), look, (drawing, drawn), next)
 }
@@ -161,6 +160,12 @@ impl Backwards<'_> {
             }
             let all = [&back[..], &self.late.strokes].concat();
             let come = carry_known(after.as_ref().unwrap_or(&self.second.drawing), &all, &drawing);
+            if come.is_empty() && there.is_empty() {
+                // A blank drawing. What is seen before it again has its numbers.
+                self.seen.push(Vec::new());
+                self.found.push(Vec::new());
+                continue;
+            }
             let late: Vec<Tracked>;
             (late, back) = come.into_iter().partition(|s| self.late.numbers.contains(&s.track));
             let renamed = self.met(&back, &there, &drawing);

@@ -16,6 +16,7 @@ pub mod discs;
 pub mod distance;
 mod left_out;
 mod paper;
+mod polarity;
 
 use crate::stroke::Options;
 use left_out::{Pencil, without};

@@ -3,7 +3,7 @@
 //! Ink is thin: where a window wider than a line moves over the picture, its lightest place is paper. The lightest value of
 //! the windows around a pixel, of which the darkest is taken (a closing with a square), removes every dark line narrower
 //! than the window and keeps larger regions: shade, creases, and the colours of a painted drawing. Light lines on dark
-//! paper are the same with light and dark exchanged.
+//! paper are the same with light and dark exchanged; which of both they are is found before ([`super::polarity`]).
 //!
 //! The closing runs on a reduced picture. A pixel of it is the mean of a block's lighter half, so that a line in the block
 //! counts little and grain is averaged. Each colour channel is closed by itself: a red line darkens green and blue.
@@ -11,6 +11,7 @@
 //! **Limits.** A dark region narrower than the window counts as ink. Where the paper is plain ([`plain`]), a window eight
 //! times as wide is used where it finds much lighter paper, so that broad strokes and solid blacks are ink there.
 
+use super::polarity::is_dark;
 use rototoon_base::scene::{Colour, Raster};
 use rototoon_image::gaussian::{Border, blur};
 
@@ -60,12 +61,6 @@ fn with_solids(narrow: &Raster<Colour>, wide: &Raster<Colour>) -> Raster<Colour>
         let (a, b) = (narrow.get(x, y), wide.get(x, y));
         if solid(a, b) { b } else { a }
     })
-}
-
-/// Whether more of the picture is dark than light.
-fn is_dark(picture: &Raster<Colour>) -> bool {
-    let dark = picture.data().iter().filter(|c| c[0].max(c[1]).max(c[2]) < 0.35).count();
-    2 * dark > picture.data().len()
 }
 
 /// The mean of each block's lighter half, channel by channel.

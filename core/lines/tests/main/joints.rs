@@ -3,6 +3,7 @@
 use super::common::{Line, covered, draw, line, ring, white};
 use rototoon_base::geometry::{Point, polyline};
 use rototoon_lines::{Options, Stroke, Style, trace};
+use std::sync::Arc;
 
 fn traced(lines: &[Line]) -> Vec<Stroke> {
     trace(draw(240, 200, lines, white), &Options { style: Style::Clean, ..Options::default() })
@@ -27,6 +28,30 @@ fn a_sharp_corner_whose_sides_run_together_is_one_stroke() {
         let strokes = traced(std::slice::from_ref(&corner));
         assert_eq!(strokes.len(), 1, "{half_angle}: {:?}", lengths(&strokes));
         assert!(is_whole(&strokes, &corner), "{half_angle}");
+    }
+}
+
+#[test]
+fn a_third_line_at_a_sharp_corner_is_not_its_tip() {
+    // Arrows: nothing is lost, and no stroke goes where no line is.
+    for (turn, barb) in (0..12).flat_map(|k| [12.0, 16.0, 20.0, 24.0].map(|barb| (30.0 * f64::from(k) + 7.0, barb))) {
+        let tip = Point::new(120.0, 100.0);
+        let side = |degrees: f64, length: f64| {
+            let end = tip + length * Point::from_angle((turn + degrees).to_radians());
+            line(&[(tip.x, tip.y), (end.x, end.y)])
+        };
+        let arrow = [side(0.0, 60.0), side(30.0, barb), side(-30.0, barb)];
+        let strokes = traced(&arrow);
+        let off = |p: &Point, lines: &mut dyn Iterator<Item = (&[Point], bool)>| {
+            lines.map(|(points, closed)| polyline::distance(*p, points, closed)).fold(f64::INFINITY, f64::min)
+        };
+        let drawn = || arrow.iter().map(|line| (&line.points[..], false));
+        let found = || strokes.iter().map(|stroke| (&stroke.points[..], stroke.closed));
+        let dense = arrow.iter().flat_map(|line| polyline::resample(&line.points, false, 40));
+        let missed = dense.map(|p| off(&p, &mut found())).fold(0.0, f64::max);
+        let beside = strokes.iter().flat_map(|s| &s.points).map(|p| off(p, &mut drawn())).fold(0.0, f64::max);
+        // Near the tip the three run together.
+        assert!(missed < 11.0 && beside < 4.0, "turned by {turn}, barbs of {barb} px: {missed}, {beside}");
     }
 }
 
@@ -85,6 +110,26 @@ fn lines_of_other_colours_are_other_lines() {
     assert!(lines.iter().all(|line| is_whole(&strokes, line)), "{:?}", lengths(&strokes));
     let first = strokes.iter().find(|s| covered(&lines[0].points, false, &s.points, false, 2.5) > 0.93).unwrap();
     assert!(!is_whole(std::slice::from_ref(first), &lines[1]));
+}
+
+#[test]
+fn two_dots_are_no_line() {
+    // The eyes of a face: discs, which are broader than the lines and not so broad that they are solid blacks.
+    for (half, radius) in (8..22).flat_map(|half| [3.0, 4.0, 5.0, 6.0].map(|radius| (f64::from(half), radius))) {
+        let eyes = [-1.0, 1.0].map(|side| Point::new(120.3 + side * half, 90.4));
+        let mut picture = draw(240, 200, &[ring(Point::new(120.0, 100.0), 70.0)], white).as_ref().clone();
+        for (x, y) in (0..200).flat_map(|y| (0..240).map(move |x| (x, y))) {
+            let at = Point::new(x as f64 + 0.5, y as f64 + 0.5);
+            let ink = eyes.iter().map(|eye| radius + 0.5 - at.distance(*eye)).fold(0.0, f64::max).min(1.0) as f32;
+            picture.set(x, y, picture.get(x, y).map(|value| value.min(1.0 - 0.9 * ink)));
+        }
+        if 2.0 * half < 2.0 * radius + 5.0 {
+            continue;
+        }
+        let strokes = trace(Arc::new(picture), &Options { style: Style::Clean, ..Options::default() });
+        let wide = |s: &Stroke| s.points.iter().any(|p| p.distance(Point::new(120.3, 90.4)) < 0.5 * half);
+        assert!(!strokes.iter().any(wide), "{half} px from the middle, {radius} px: {:?}", lengths(&strokes));
+    }
 }
 
 #[test]

@@ -139,6 +139,25 @@ fn paper_that_is_not_clicked_stays_without_paint() {
 }
 
 #[test]
+fn paper_stays_without_paint_where_few_regions_are_clicked() {
+    // Nobody clicks the holes of a lace.
+    let lace = |frame: FrameNumber, p: Point| {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        let hole = |k: u32| ring(p, (x - 35.0 + 10.0 * f64::from(k), 112.0), 3.0);
+        (0..8).map(hole).fold(moving(frame, p), f64::min)
+    };
+    let [_, red, blue] = own_clicks();
+    let mut film = Film::new(4, lace).clicked(&[(0, &[red, blue])]);
+    film.fill().unwrap();
+    for frame in 0..=4 {
+        let x = 60.0 + 6.0 * f64::from(frame);
+        assert_eq!(film.at(frame, (5.0, 5.0)), None, "frame {frame}");
+        let found = [film.at(frame, (x - 35.0, 75.0)).unwrap(), film.at(frame, (x, 75.0)).unwrap()];
+        assert_eq!(found.map(|region| region.colour), [RED, BLUE], "frame {frame}");
+    }
+}
+
+#[test]
 fn a_click_without_a_colour_keeps_a_region_without_paint() {
     let [_, red, _] = own_clicks();
     let hole = FillClick { colour: None, ..click((60.0, 75.0), BLUE) };

@@ -57,8 +57,11 @@ impl Tracing<'_> {
             if let Some(span) = self.recall(&key, 1, &numbers) {
                 self.next += span.new;
                 self.pass(1);
-                let seen = span.drawings.iter().flat_map(|strokes| numbers.numbered(strokes)).collect();
-                way = Way { frame, ink: None, last: numbers.numbered(&span.beside), seen };
+                let seen: Vec<Tracked> = span.drawings.iter().flat_map(|strokes| numbers.numbered(strokes)).collect();
+                if !seen.is_empty() {
+                    way = Way { frame, ink: None, last: numbers.numbered(&span.beside), seen: seen.clone() };
+                }
+                found.push((frame, seen));
             } else {
                 let before = self.next;
                 let first = self.ink(place)?;
@@ -68,39 +71,45 @@ impl Tracing<'_> {
                     shown.learn_drawn(place.by_hand.iter().copied());
                     shown
                 });
-                way = self.on(way, (place.frame, &first), shown, frame)?;
+                let seen = self.on(&mut way, (place.frame, &first), shown, frame)?;
                 place.ink = Some(first);
-                let (drawings, beside) = (vec![numbers.ranked(&way.seen)], numbers.ranked(&way.last));
-                let new = self.next - before;
+                let beside = if seen.is_empty() { Vec::new() } else { numbers.ranked(&way.last) };
+                let (drawings, new) = (vec![numbers.ranked(&seen)], self.next - before);
                 self.keep(key, || Span { drawings, beside, new });
+                found.push((frame, seen));
             }
-            found.push((frame, way.seen.clone()));
         }
         Ok(())
     }
 
-    /// The step of a way to a frame. It began on the frame `first`.
+    /// The step of a way to a frame. Returns what the frame shows. The way began on the frame `first`. Where the frame shows nothing, the way
+    /// stays where it is: what comes back behind a blank drawing has its numbers.
     fn on(
         &mut self,
-        way: Way,
+        way: &mut Way,
         (first, ink): (FrameNumber, &Drawing),
         shown: &Shown,
         frame: FrameNumber,
-    ) -> Result<Way, PipelineError> {
-        let Way { frame: before, ink: own, last, mut seen } = way;
-        let own = if before == first { None } else { Some(self.ink_of(own, before)?) };
+    ) -> Result<Vec<Tracked>, PipelineError> {
+        let own = if way.frame == first { None } else { Some(self.ink_of(way.ink.take(), way.frame)?) };
         let from = own.as_ref().unwrap_or(ink);
         let drawing = self.look(frame)?;
         let new = self.next;
-        let mut last = carry(from, &last, &drawing, &mut self.next);
-        if is_same(from, &drawing) {
+        let mut last = carry(from, &way.last, &drawing, &mut self.next);
+        let seen: Vec<Tracked> = if is_same(from, &drawing) {
             // It has the same strokes, also those of the artist that lie off the ink, and those that the artist did not draw.
-            seen.extend(last.iter().filter(|stroke| stroke.track >= new).cloned());
+            let began = last.iter().filter(|stroke| stroke.track >= new);
+            way.seen.iter().chain(began).cloned().collect()
         } else {
             let traced = shown.traced(&mut last, &drawing, &mut self.next);
-            seen = traced.into_iter().map(|(_, stroke)| stroke).collect();
+            traced.into_iter().map(|(_, stroke)| stroke).collect()
+        };
+        if seen.is_empty() {
+            way.ink = own;
+        } else {
+            *way = Way { frame, ink: Some(drawing), last, seen: seen.clone() };
         }
-        Ok(Way { frame, ink: Some(drawing), last, seen })
+        Ok(seen)
     }
 
     /// Carries the strokes of a place to the next drawing. Returns the place there.
@@ -156,26 +165,33 @@ impl Tracing<'_> {
     ) -> Result<(Vec<Vec<Tracked>>, Option<Drawing>), PipelineError> {
         let mut all: Vec<Vec<Tracked>> = Vec::with_capacity(frames.len());
         let mut ink = place.ink.take();
-        for pair in frames.windows(2) {
-            let [from, to] = [pair[0], pair[1]];
-            let last = all.last().cloned().unwrap_or_else(|| place.all());
+        let Some((&first, others)) = frames.split_first() else { return Ok((all, None)) };
+        // Strokes are carried from the last drawing that shows any.
+        let (mut from, mut last) = (first, place.all());
+        for &to in others {
             let key = self.step("forwards", None, (numbers, &[&numbers.ranked(&last)]), [from, to])?;
-            if let Some(span) = self.recall(&key, 1, numbers) {
+            let (carried, drawing) = if let Some(span) = self.recall(&key, 1, numbers) {
                 self.next += span.new;
                 self.pass(1);
-                all.extend(span.drawings.iter().map(|strokes| numbers.numbered(strokes)));
+                (span.drawings.iter().flat_map(|strokes| numbers.numbered(strokes)).collect(), None)
+            } else {
+                let before = self.next;
+                let own = self.ink_of(ink.take(), from)?;
+                let drawing = self.look(to)?;
+                let carried = carry(&own, &last, &drawing, &mut self.next);
+                ink = Some(own);
+                let (drawings, new) = (vec![numbers.ranked(&carried)], self.next - before);
+                self.keep(key, || Span { drawings, beside: Vec::new(), new });
+                (carried, Some(drawing))
+            };
+            if !carried.is_empty() {
                 self.passed(place, from, ink.take());
-                continue;
+                (from, last, ink) = (to, carried.clone(), drawing);
             }
-            let before = self.next;
-            let own = self.ink_of(ink.take(), from)?;
-            let drawing = self.look(to)?;
-            let carried = carry(&own, &last, &drawing, &mut self.next);
-            self.passed(place, from, Some(own));
-            ink = Some(drawing);
-            let (drawings, new) = (vec![numbers.ranked(&carried)], self.next - before);
-            self.keep(key, || Span { drawings, beside: Vec::new(), new });
             all.push(carried);
+        }
+        if others.last().is_some_and(|&end| end != from) {
+            self.passed(place, from, ink.take());
         }
         Ok((all, ink))
     }

@@ -324,6 +324,42 @@ impl FrameSource for Redrawn {
     }
 }
 
+/// The film with two blank drawings.
+struct Blinking;
+
+impl FrameSource for Blinking {
+    fn picture(&self, frame: FrameNumber) -> Result<Arc<Raster<Colour>>, FrameError> {
+        if (4..=5).contains(&frame) { Ok(Arc::new(Raster::new(120, 90, [1.0; 3]))) } else { Film.picture(frame) }
+    }
+
+    fn mark(&self, frame: FrameNumber) -> Result<Option<Mark>, FrameError> {
+        Ok(Some(mark(&*self.picture(frame)?)))
+    }
+}
+
+#[test]
+fn what_comes_back_behind_blank_drawings_has_its_numbers() {
+    let holds = Holds::none(&Blinking);
+    for drawings in
+        [vec![], vec![drawn(7, 0.0)], vec![drawn(1, 0.0), drawn(8, 0.0)], vec![drawn(3, 0.0), drawn(6, 0.0)]]
+    {
+        let anew = of(&holds, 0..=LAST, &drawings, &[], None);
+        let numbers = tracks(&anew);
+        assert!(numbers[4].is_empty() && numbers[5].is_empty());
+        for frame in [2, 3, 6, 7, 8, 9] {
+            assert_eq!(numbers[frame][..2], [0, 1], "frame {frame}, {drawings:?}");
+        }
+        // The artist drew two of the three bars.
+        let is_drawn = |frame: FrameNumber| drawings.iter().any(|drawing| drawing.frame == frame);
+        assert_eq!(numbers[3].len(), if is_drawn(3) { 2 } else { 3 });
+        assert_eq!(numbers[6], numbers[3], "{drawings:?}");
+        let mut memory = TraceMemory::default();
+        for run in 0..2 {
+            assert_eq!(of(&holds, 0..=LAST, &drawings, &[], Some(&mut memory)), anew, "run {run}");
+        }
+    }
+}
+
 /// Traces all frames with and without a cache, which must be the same. Returns how many steps were known.
 fn known(frames: &dyn FrameSource, drawings: &[Drawn], options: &Options, store: &Store) -> usize {
     let holds = Holds::none(frames);
