@@ -84,6 +84,29 @@ fn nearer_parts_come_first_and_hide_the_farther_ones() {
 }
 
 #[test]
+fn parts_that_change_their_places_hide_each_other_in_turn() {
+    let recorder = Recorder::default();
+    let mut tracker = Tracker::with_solver(Box::new(recorder.clone()));
+    let mut arm = part("arm", 0.0, &[0, 6]);
+    arm.depths = (4..=6).map(|frame| (frame, 2.0)).collect();
+    let scene = scene(vec![arm, part("body", 1.0, &[0, 6]), part("ground", -1.0, &[0, 6])]);
+    assert_eq!(solved(&mut tracker, &scene), [(0, 0), (1, 0), (2, 0)]);
+    let jobs: Vec<(String, Vec<usize>)> = std::mem::take(&mut *recorder.0.lock().unwrap())
+        .into_iter()
+        .map(|job| (job.name, job.occluders.iter().map(Vec::len).collect()))
+        .collect();
+    let expected: [(&str, [usize; 7]); 4] = [
+        ("body", [0, 0, 0, 0, 0, 0, 1]),
+        ("arm", [1, 1, 1, 1, 0, 0, 0]),
+        ("ground", [2; 7]),
+        ("body", [0, 0, 0, 0, 1, 1, 1]),
+    ];
+    assert_eq!(jobs, expected.map(|(name, counts)| (name.to_owned(), counts.to_vec())));
+    assert_eq!(solved(&mut tracker, &scene), []);
+    assert!(recorder.0.lock().unwrap().is_empty(), "both times are remembered");
+}
+
+#[test]
 fn a_part_hides_nothing_where_it_is_absent() {
     let recorder = Recorder::default();
     let mut near = part("near", 2.0, &[0, 10]);
