@@ -15,6 +15,7 @@ from rototoon import LibraryError, RototoonError, Session
 from ..blender.errors import Problem
 from ..blender.footage import HELD
 from ..capture.document import VERSION
+from ..common.wording import counted
 from .fields import wrong
 
 _FOOTAGE = {"pattern", "first", "last", "fps", "width", "height", "gaps"}
@@ -112,7 +113,7 @@ def _check_part(place: str, part: Any, names: set[str]) -> None:
             array = _points(on, points)
             first = first or (on, len(array))
             if len(array) != first[1]:
-                raise Problem(f"{on}: found {len(array)} points, expected {first[1]} as in {first[0]}")
+                raise Problem(f"{on}: found {counted(len(array), 'point')}, expected {first[1]} as in {first[0]}")
     for field in ("pins", "centers", "confidence", "curves"):
         list(_frames(place, field, part.get(field)))
 

@@ -138,7 +138,7 @@ def test_an_import_that_has_no_place_leaves_the_object(addon, tmp_path, lacking)
         (lambda d: d.update(rototoon=2), "rototoon: found 2, expected the version 1"),
         (lambda d: d.pop("rototoon"), "rototoon: found nothing, .*not a project document"),
         (lambda d: d["footage"].pop("width"), "footage.width: found nothing, expected a whole number"),
-        (lambda d: d["parts"][1]["keys"].update({"5": [[1, 2]]}), r"parts\[1\].keys\[5\]: found 1 points, expected \d+ as in parts\[1\].keys\[2\]"),
+        (lambda d: d["parts"][1]["keys"].update({"5": [[1, 2]]}), r"parts\[1\].keys\[5\]: found 1 point, expected \d+ as in parts\[1\].keys\[2\]"),
         (lambda d: d["parts"][1]["keys"].update({"x": [[1, 2]]}), 'found "x", expected a frame number'),
         (lambda d: d["parts"][1].update(name="box"), 'name: found "box", expected another name'),
         (lambda d: d["parts"][1]["keys"]["2"].append(["a", None]), r"parts\[1\].keys\[2\]"),

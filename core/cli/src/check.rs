@@ -70,14 +70,16 @@ fn say(document: &Document, problems: &Problems, path: &Path) -> Result<(), Fail
     Ok(())
 }
 
-/// The drawings in words: "5 frames show 3 drawings: 0-1, 2, 3-4".
+/// The drawings in words: "5 frames show 3 drawings: 0-1, 2, 3-4", "1 frame shows 1 drawing: 7".
 fn listed(drawings: &[[FrameNumber; 2]]) -> String {
     let frames: i64 = drawings.iter().map(|[first, last]| i64::from(*last) - i64::from(*first) + 1).sum();
     let range = |&[first, last]: &[FrameNumber; 2]| {
         if first == last { first.to_string() } else { format!("{first}-{last}") }
     };
     let ranges: Vec<String> = drawings.iter().map(range).collect();
-    format!("{frames} frames show {} drawings: {}", drawings.len(), ranges.join(", "))
+    let shows = if frames == 1 { "frame shows" } else { "frames show" };
+    let noun = if drawings.len() == 1 { "drawing" } else { "drawings" };
+    format!("{frames} {shows} {} {noun}: {}", drawings.len(), ranges.join(", "))
 }
 
 /// How many warnings there are, if any.

@@ -189,9 +189,8 @@ impl PartCheck<'_> {
         let Some((first, points)) = part.keys.first_key_value() else { return };
         match points.len() {
             0 => self.warning("keys", "the part has no points, so there is nothing to track"),
-            n @ 1..=2 if part.closed => {
-                self.warning("keys", format!("the part is closed but has {n} points, which enclose no area"))
-            }
+            1 if part.closed => self.warning("keys", "the part is closed but has 1 point, which encloses no area"),
+            2 if part.closed => self.warning("keys", "the part is closed but has 2 points, which enclose no area"),
             1 => self.warning("keys", "the part has one point, which makes no contour"),
             _ => {}
         }
@@ -199,7 +198,7 @@ impl PartCheck<'_> {
             let place = format!("keys.\"{frame}\"");
             if key.len() != points.len() {
                 let expected = format!("expected {} as on the part's first key, frame {first}", points.len());
-                self.error(&place, format!("found {} points, {expected}", key.len()));
+                self.error(&place, format!("found {}, {expected}", counted(key.len(), "point")));
             }
             self.frame_inside(&place, *frame);
             self.contour(&place, key);
@@ -294,8 +293,9 @@ impl PartCheck<'_> {
         }
         let (found, count) = (part.feather.len(), part.point_count());
         if found > 0 && found != count {
-            let why = format!("but the keys have {count} points, so they are kept but have no effect");
-            self.warning("feather", format!("found {found} widths, {why}"));
+            let why =
+                format!("but the keys have {}, so the widths are kept but have no effect", counted(count, "point"));
+            self.warning("feather", format!("found {}, {why}", counted(found, "width")));
         } else if found > 0 && !part.closed {
             self.warning("feather", "the part is open and has no area, so the widths are kept but have no effect");
         }
@@ -317,7 +317,7 @@ impl PartCheck<'_> {
             let found = part.tracks[frame].len();
             self.warning(
                 format!("tracks.\"{frame}\""),
-                format!("found {found} points, but the keys have {count}: track again"),
+                format!("found {}, but the keys have {count}: track again", counted(found, "point")),
             );
         }
         let uneven =
@@ -336,13 +336,19 @@ impl PartCheck<'_> {
         }
         let segments = part.segment_count();
         if let Some((frame, paths)) = part.curves.iter().find(|(_, paths)| paths.len() != segments) {
-            let found = paths.len();
+            let found = counted(paths.len(), "path");
+            let are = if segments == 1 { "is" } else { "are" };
             self.warning(
                 format!("curves.\"{frame}\""),
-                format!("found {found} paths, but there are {segments} segments: snap again"),
+                format!("found {found}, but there {are} {}: snap again", counted(segments, "segment")),
             );
         }
     }
+}
+
+/// A number with its noun.
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Whether a correction on this frame has an effect: the frame is between two keys, or differs from that of the only

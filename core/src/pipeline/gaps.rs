@@ -78,8 +78,10 @@ pub(super) fn lines(gaps: &[Gap]) -> Vec<String> {
 /// The lines of gaps, and how many of how many frames were drawn nevertheless.
 pub(super) fn told(gaps: &[Gap], drawn: Option<[usize; 2]>) -> String {
     let mut lines = lines(gaps);
-    lines.extend(drawn.map(|[drawn, all]| match drawn {
-        0 => format!("none of {all} frames was drawn"),
+    lines.extend(drawn.map(|[drawn, all]| match (drawn, all) {
+        (0, 1) => "the frame was not drawn".to_owned(),
+        (0, _) => format!("none of {all} frames was drawn"),
+        (1, _) => format!("1 of {all} frames was drawn; those named are missing"),
         _ => format!("{drawn} of {all} frames were drawn; those named are missing"),
     }));
     lines.join("\n")
@@ -136,5 +138,8 @@ mod tests {
                 "5 of 12 frames were drawn; those named are missing",
             ]
         );
+        let last = |drawn| told(&[missing(1)], Some(drawn)).lines().last().map(str::to_owned).unwrap();
+        assert_eq!(last([0, 1]), "the frame was not drawn");
+        assert_eq!(last([1, 2]), "1 of 2 frames was drawn; those named are missing");
     }
 }

@@ -130,7 +130,7 @@ fn odd_parts_are_tracked_or_left_alone_with_a_warning() {
         ("no key", json!({}), "there is no key"),
         ("one key", json!({"3": square(8.0)}), ""),
         ("no point", two(json!([])), "the part has no points"),
-        ("one point", two(json!([[9, 12]])), "has 1 points"),
+        ("one point", two(json!([[9, 12]])), "has 1 point, which encloses no area"),
         ("two points", two(json!([[9, 12], [20, 12]])), "has 2 points"),
         ("no area", two(json!([[9, 12], [20, 12], [14, 12]])), "encloses no area"),
         ("a figure of eight", two(json!([[9, 12], [20, 18], [20, 12], [9, 18]])), "crosses itself"),

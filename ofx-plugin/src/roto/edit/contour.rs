@@ -61,8 +61,8 @@ pub fn draw(
 fn check(points: &[Point], closed: bool) -> Result<(), Refused> {
     let least = if closed { 3 } else { 2 };
     if points.len() < least {
-        let found = points.len();
-        return Err(Refused::new(format!("found {found} points, expected at least {least} for a contour")));
+        let (found, points) = (points.len(), if points.len() == 1 { "point" } else { "points" });
+        return Err(Refused::new(format!("found {found} {points}, expected at least {least} for a contour")));
     }
     if closed && polygon::signed_area(points).abs() < LEAST_AREA {
         return Err(Refused::new("the contour encloses no area"));

@@ -71,9 +71,9 @@ pub fn delete(document: &mut Document, index: usize, gone: &BTreeSet<usize>) -> 
     let gone: BTreeSet<usize> = gone.iter().copied().filter(|k| *k < count).collect();
     let (left, least) = (count - gone.len(), LEAST[usize::from(!part.closed)]);
     if left < least {
-        let name = &part.name;
+        let (name, points) = (&part.name, if left == 1 { "point" } else { "points" });
         return Err(Refused::new(format!(
-            "{name:?} would keep {left} points, expected at least {least}: use Delete part instead"
+            "{name:?} would keep {left} {points}, expected at least {least}: use Delete part instead"
         )));
     }
     each_shape(part, |points| retain(points, &gone));
