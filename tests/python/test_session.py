@@ -394,7 +394,7 @@ def test_parts_and_footage_can_be_changed(session, document, folder):
         (lambda s: s.pin("red", 0, 0, (1, 1)), "frame 0 is a key"),
         (lambda s: s.pin("red", 3, 4, (1, 1)), "no point 4; it has 4"),
         (lambda s: s.pin("red", 3, 0, (float("nan"), 1)), "found (NaN, 1)"),
-        (lambda s: s.set_key("red", 3, [(1, 1)]), "found 1 points, expected 4 as on frame 0"),
+        (lambda s: s.set_key("red", 3, [(1, 1)]), "found 1 point, expected 4 as on frame 0"),
         (lambda s: s.set_key("red", 99, square(0, 0)), "frame 99 is outside the footage"),
         (lambda s: s.remove_key("red", 3), "no key on frame 3"),
         (lambda s: s.track("best"), 'preset: found "best", expected one of'),

@@ -35,7 +35,9 @@ pub fn safe_name(name: &str) -> Result<(), String> {
     }
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_uppercase();
     let numbered = |device: &str| {
-        stem.strip_prefix(device).is_some_and(|rest| rest.len() == 1 && rest.as_bytes()[0].is_ascii_digit())
+        // The raised digits of Latin-1 count too.
+        let is_number = |digit: char| digit.is_ascii_digit() || "¹²³".contains(digit);
+        stem.strip_prefix(device).is_some_and(|rest| rest.chars().count() == 1 && rest.chars().all(is_number))
     };
     if DEVICES.contains(&&*stem) || NUMBERED.into_iter().any(numbered) {
         return Err("a name that is no device of Windows, such as CON, NUL or COM1".into());
@@ -73,6 +75,8 @@ mod tests {
             "a\nb",
             "CON",
             "nul.txt",
+            "COM¹",
+            "lpt³.png",
             "Aux .a.b",
             "lpt1",
             "com0.json",

@@ -21,7 +21,7 @@ pub enum EditError {
         frame: FrameNumber,
     },
     /// The key has another number of points than the part's other keys, or none.
-    #[error("part {part:?}, key on frame {frame}: found {found} points, expected {expected}")]
+    #[error("part {part:?}, key on frame {frame}: found {found} {}, expected {expected}", if *found == 1 { "point" } else { "points" })]
     PointCount {
         /// Name of the part.
         part: String,
@@ -407,7 +407,7 @@ mod tests {
         let cases = [
             (refused(|s| set_key(s, "leg", 0, &KEY)), r#"no part "leg"; the document has "arm""#),
             (refused(|s| set_key(s, "arm", 10, &KEY)), "frame 10 is outside the footage, which has frames 0 to 9"),
-            (refused(|s| set_key(s, "arm", 4, &KEY[..2])), "key on frame 4: found 1 points, expected 2 as on frame 0"),
+            (refused(|s| set_key(s, "arm", 4, &KEY[..2])), "key on frame 4: found 1 point, expected 2 as on frame 0"),
             (refused(|s| set_key(s, "arm", 4, &[])), "found 0 points, expected at least 1"),
             (refused(|s| set_key(s, "arm", 4, &KEY[..3])), "found 3 coordinates, expected an even number"),
             (refused(|s| set_key(s, "arm", 4, &[0.0, 0.0, f64::NAN, 0.0])), "frame 4, point 1: found (NaN, 0)"),

@@ -343,5 +343,5 @@ fn bindings_carry_the_hash_and_version_of_this_build() {
     let mut version = null_mut();
     // SAFETY: the out parameter is a local.
     assert_eq!(unsafe { rototoon_version(&mut version, null_mut()) }, Fine);
-    assert_eq!(take(version), env!("CARGO_PKG_VERSION"));
+    assert_eq!(take(version), rototoon::VERSION);
 }
