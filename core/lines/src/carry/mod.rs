@@ -80,10 +80,11 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
     }
     let unit = to.unit;
     let mut strokes: Vec<Tracked> = strokes.iter().filter(|s| s.stroke.points.len() > 1).cloned().collect();
+    let order = shortest_first(&mut strokes);
     let reach = EXPLAINS * unit + 0.5 * to.width;
     if is_same(from, to) {
         let rests = rest::left(to.lines(), &covered(strokes.iter().map(of_stroke), reach), reach, NEW * unit);
-        return (strokes, rests);
+        return (as_they_came(order.into_iter().zip(strokes)), rests);
     }
     let registered = register::register(from, &strokes, to);
     if !registered.related {
@@ -124,7 +125,34 @@ fn carried(from: &Drawing, strokes: &[Tracked], to: &Drawing) -> (Vec<Tracked>, 
         confidence: strokes[k].confidence * signs.probability(),
         ..finished(&strokes[k], points, *closed, to)
     };
-    (numbers.par_iter().zip(&lines).map(known).collect(), rests)
+    let found: Vec<(usize, Tracked)> = numbers.par_iter().zip(&lines).map(|own| (order[own.0.0], known(own))).collect();
+    (as_they_came(found), rests)
+}
+
+/// Puts the shortest strokes first, and returns the place in the list at which each was. Messages between points run in an order, so the list would decide
+/// where nothing else does: the same strokes in another order would go to other lines. Long strokes know best where they are. On the way back they speak
+/// first.
+fn shortest_first(strokes: &mut Vec<Tracked>) -> Vec<usize> {
+    fn numbers(tracked: &Tracked) -> impl Iterator<Item = f64> + '_ {
+        tracked.stroke.points.iter().flat_map(|p| [p.y, p.x])
+    }
+    let length = |tracked: &Tracked| polyline::length(&tracked.stroke.points, tracked.stroke.closed);
+    let all = std::mem::take(strokes).into_iter().enumerate();
+    let mut all: Vec<(f64, usize, Tracked)> = all.map(|(k, tracked)| (length(&tracked), k, tracked)).collect();
+    all.sort_by(|(a_length, _, a), (b_length, _, b)| {
+        let places = numbers(a).zip(numbers(b)).map(|(x, y)| x.total_cmp(&y)).find(|order| order.is_ne());
+        a_length.total_cmp(b_length).then(places.unwrap_or(a.track.cmp(&b.track)))
+    });
+    let (order, sorted) = all.into_iter().map(|(_, k, tracked)| (k, tracked)).unzip();
+    *strokes = sorted;
+    order
+}
+
+/// Strokes in the order of their places in the list.
+fn as_they_came(strokes: impl IntoIterator<Item = (usize, Tracked)>) -> Vec<Tracked> {
+    let mut all: Vec<(usize, Tracked)> = strokes.into_iter().collect();
+    all.sort_by_key(|found| found.0);
+    all.into_iter().map(|(_, tracked)| tracked).collect()
 }
 
 fn of_stroke(tracked: &Tracked) -> (&[Point], bool) {

@@ -113,6 +113,27 @@ fn lines_with_paint_in_them_are_carried_as_lines() {
 }
 
 #[test]
+fn the_order_of_the_strokes_changes_nothing() {
+    // Far enough apart that much is in doubt.
+    let (from, to) = (drawing(&posed(0.0)), drawing(&posed(3.5)));
+    let strokes = tracked(&posed(0.0));
+    let carried = |strokes: &[Tracked]| {
+        let mut found = carry(&from, strokes, &to, &mut 12);
+        found.sort_by_key(|stroke| stroke.track);
+        found
+    };
+    let found = carried(&strokes);
+    let turned: Vec<Tracked> = strokes.iter().rev().cloned().collect();
+    let mixed: Vec<Tracked> = (0..12).map(|k| strokes[k * 5 % 12].clone()).collect();
+    for other in [turned, mixed] {
+        assert!(carried(&other) == found, "{} strokes", found.len());
+        let kept: Vec<usize> = carry(&from, &other, &to, &mut 12).iter().map(|s| s.track).filter(|&k| k < 12).collect();
+        let given = other.iter().map(|s| s.track).filter(|k| kept.contains(k));
+        assert!(kept.iter().copied().eq(given), "they come in the order in which they went");
+    }
+}
+
+#[test]
 fn drawings_without_ink_end_all_strokes() {
     let lines = posed(0.0);
     let (full, empty) = (drawing(&lines), drawing(&[]));
