@@ -179,6 +179,16 @@ def places(text: str) -> tuple[tuple[float, float], ...]:
     return tuple(found)
 
 
+def even(count: int) -> str:
+    """The chart of an even movement over so many in-betweens."""
+    return ", ".join(f"{100 * (k + 1) / (count + 1):.4g}" for k in range(count))
+
+
+def is_even(text: str) -> bool:
+    """Whether a chart is an even one as it is written here."""
+    return text == even(len(percentages(text)))
+
+
 def percentages(text: str) -> list[float]:
     """Shares of a list such as "10, 25 50 90"."""
     words = text.replace(",", " ").replace("%", " ").replace(";", " ").split()

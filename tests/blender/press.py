@@ -48,7 +48,7 @@ ENTRY = {"choose_body": 2}
 """Entries of menus that are chosen, counted from the last: after that of Choose Body a file is asked for."""
 QUIET = {"show_confidence"}
 """Operators whose result is seen at once, so that they say nothing."""
-DIALOGS = {"save_clip", "save_clip_from_armature", "depth_mark", "reshape_drawing", "reshape_picture", "apply_motion", "drive_bones"}
+DIALOGS = {"recolour", "save_clip", "save_clip_from_armature", "depth_mark", "reshape_drawing", "reshape_picture", "apply_motion", "drive_bones"}
 """Operators that ask first, in a dialog with an OK."""
 NOTICES = ("press: ", "Info: Saved", "Read blend", "Saved as", "mounted file-systems", " × Draw ")
 """What Blender prints whatever is pressed."""

@@ -390,6 +390,26 @@ def test_a_chart_of_the_wrong_length_is_refused(addon, chart):
     assert sorted(frames(addon, ob)) == list(range(1, 18, 2))
 
 
+def test_the_button_chart_begins_with_an_even_chart_of_the_span(addon):
+    ob = keyed(addon, (1, 9, 17, 22))
+    bpy.context.scene.frame_set(3)
+
+    def kept(first):
+        return json.loads(ob.data["rototoon_tween"])["Lines"]["spans"][str(first)]["choices"]["chart"]
+
+    bpy.ops.rototoon.in_between(frames="CURRENT", spacing="CHART")
+    assert kept(1) == "12.5, 25, 37.5, 50, 62.5, 75, 87.5"
+    # What Blender shows after the button, with another number of frames for each drawing.
+    bpy.ops.rototoon.in_between(frames="CURRENT", spacing="CHART", chart=kept(1), step=2)
+    assert kept(1) == "25, 50, 75"
+    # The chart fits as it is.
+    bpy.context.scene.frame_set(18)
+    bpy.ops.rototoon.in_between(frames="CURRENT", spacing="CHART")
+    assert kept(17) == "10, 30, 70, 90"
+    with pytest.raises(RuntimeError, match="The chart has 4 percentages, expected 7"):
+        bpy.ops.rototoon.in_between(frames="ALL", spacing="CHART")
+
+
 @pytest.mark.parametrize("curve", ["0 0", "1 1", "0 0.5"])
 def test_a_curve_of_one_end_is_refused(addon, curve):
     ob = keyed(addon)

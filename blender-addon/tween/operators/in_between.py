@@ -132,11 +132,22 @@ class ROTOTOON_OT_in_between(Scoped, Tweening, bpy.types.Operator):
             held = record.holding(*spans[0]) if spans else None
             every = zip(found.keys, found.keys[1:])
             spans = [span for span in every if span in spans or (held is not None and record.holding(*span) is held)]
+        self._fit_chart(spans)
         chosen = {span: self._divided(span, found, record) or self._choices for span in spans}
         for span, choices in chosen.items():
             if choices.part == WHOLE:
                 choices.need_chart(*span)
         return chosen
+
+    def _fit_chart(self, spans) -> None:
+        """Gives a chart that nobody wrote for these spans as many percentages as they have drawings. The button has no chart of its own: the artist writes it into
+        the panel below the view, which Blender shows only of what succeeded."""
+        if self.spacing != "CHART" or (self.properties.is_property_set("chart") and not charts.is_even(self.chart)):
+            return
+        counts = {len(self._choices.frames(*span)) for span in spans} - {0}
+        if len(counts) == 1 and counts != {len(charts.percentages(self.chart))}:
+            self.chart = charts.even(*counts)
+            self._choices = replace(self._choices, chart=self.chart)
 
     def _divided(self, span, found, record) -> Choices | None:
         """The part of the spacing for a span beside an in-between that the artist changed, if its span was drawn with the same choices."""
