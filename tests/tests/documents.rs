@@ -250,7 +250,7 @@ fn a_falloff_and_a_colour_are_read_written_and_checked() {
 fn odd_contours_are_valid_with_a_warning() {
     for (points, warning) in [
         ("[]", "the part has no points"),
-        ("[[1, 1]]", "the part is closed but has 1 points"),
+        ("[[1, 1]]", "the part is closed but has 1 point"),
         ("[[1, 1], [2, 2]]", "the part is closed but has 2 points"),
         ("[[1, 1], [2, 2], [3, 3]]", "the contour encloses no area"),
         ("[[-9, 1], [-2, 2], [-3, 9]]", "the contour is completely outside of the picture of 64x48 pixels"),

@@ -27,15 +27,16 @@ pub fn lay_out(library: &Path, version: &str) -> Result<()> {
 
 /// Makes a bundle with the plugins of several systems: hosts take the one in their own system's folder.
 pub fn lay_out_at(place: &Path, plugins: &[(Platform, PathBuf)], version: &str) -> Result<()> {
+    // A bundle that is there stays until all plugins are known to be good.
+    for (_, plugin) in plugins.iter().filter(|(platform, _)| *platform == LINUX) {
+        check(plugin)?;
+    }
     empty_folder(place)?;
     let contents = place.join("Contents");
     let resources = contents.join("Resources");
     std::fs::create_dir_all(&resources)?;
     std::fs::write(contents.join("Info.plist"), property_list(version))?;
     for (platform, plugin) in plugins {
-        if *platform == LINUX {
-            check(plugin)?;
-        }
         let binaries = contents.join(platform.ofx);
         std::fs::create_dir_all(&binaries)?;
         let binary = binaries.join("Rototoon.ofx");
@@ -94,12 +95,16 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_refused() {
+    fn other_files_are_refused_and_the_bundle_stays() {
         let folder = target().join("xtask-ofx-test");
         empty_folder(&folder).unwrap();
         let other = folder.join("not-elf.so");
         std::fs::write(&other, "text").unwrap();
-        assert!(lay_out(&other, "0.2.0").is_err());
+        let place = folder.join("Rototoon.ofx.bundle");
+        std::fs::create_dir_all(&place).unwrap();
+        std::fs::write(place.join("old"), "").unwrap();
+        assert!(lay_out_at(&place, &[(LINUX, other)], "0.2.0").is_err());
+        assert!(place.join("old").is_file());
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }
