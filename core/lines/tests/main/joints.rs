@@ -34,13 +34,16 @@ fn a_sharp_corner_whose_sides_run_together_is_one_stroke() {
 #[test]
 fn a_third_line_at_a_sharp_corner_is_not_its_tip() {
     // Arrows: nothing is lost, and no stroke goes where no line is.
-    for (turn, barb) in (0..12).flat_map(|k| [12.0, 16.0, 20.0, 24.0].map(|barb| (30.0 * f64::from(k) + 7.0, barb))) {
+    // Most barbs are no longer than the ink that all three lines share, as the tip of a corner would be.
+    let arrows = [(25.0, 16.0), (25.0, 20.0), (25.0, 24.0), (30.0, 14.0), (30.0, 16.0), (30.0, 20.0), (30.0, 24.0)];
+    let turned = |(spread, barb)| (0..12).map(move |k| (30.0 * f64::from(k) + 7.0, spread, barb));
+    for (turn, spread, barb) in arrows.into_iter().flat_map(turned) {
         let tip = Point::new(120.0, 100.0);
         let side = |degrees: f64, length: f64| {
             let end = tip + length * Point::from_angle((turn + degrees).to_radians());
             line(&[(tip.x, tip.y), (end.x, end.y)])
         };
-        let arrow = [side(0.0, 60.0), side(30.0, barb), side(-30.0, barb)];
+        let arrow = [side(0.0, 60.0), side(spread, barb), side(-spread, barb)];
         let strokes = traced(&arrow);
         let off = |p: &Point, lines: &mut dyn Iterator<Item = (&[Point], bool)>| {
             lines.map(|(points, closed)| polyline::distance(*p, points, closed)).fold(f64::INFINITY, f64::min)
@@ -51,7 +54,7 @@ fn a_third_line_at_a_sharp_corner_is_not_its_tip() {
         let missed = dense.map(|p| off(&p, &mut found())).fold(0.0, f64::max);
         let beside = strokes.iter().flat_map(|s| &s.points).map(|p| off(p, &mut drawn())).fold(0.0, f64::max);
         // Near the tip the three run together.
-        assert!(missed < 11.0 && beside < 4.0, "turned by {turn}, barbs of {barb} px: {missed}, {beside}");
+        assert!(missed < 8.5 && beside < 2.2, "turned by {turn}, barbs of {barb} px at {spread}°: {missed}, {beside}");
     }
 }
 
