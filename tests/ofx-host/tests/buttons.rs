@@ -47,16 +47,13 @@ pub fn drawing(frame: i32) -> Vec<f32> {
 /// A document with a shape that has a key on the first and the last frame.
 pub fn keyed() -> Document {
     let keys = [0, LAST].map(|frame| (frame, blob(frame))).into();
-    let part = Part { name: "blob".into(), closed: true, keys, ..Part::default() };
-    let footage = Footage {
-        pattern: "%d.png".into(),
-        first: 0,
-        last: LAST,
-        fps: 24.0,
-        width: WIDTH,
-        height: HEIGHT,
-        held: false,
-    };
+    with(Part { name: "blob".into(), closed: true, keys, ..Part::default() }, LAST)
+}
+
+/// A document with a part, on footage of this size from frame 0 to the last one.
+pub fn with(part: Part, last: i32) -> Document {
+    let footage =
+        Footage { pattern: "%d.png".into(), first: 0, last, fps: 24.0, width: WIDTH, height: HEIGHT, held: false };
     Document::new(Scene { footage, parts: vec![part] })
 }
 

@@ -1,15 +1,14 @@
 //! Tests of sources with transparent paper: what is tracked is what the command line sees.
 
+use crate::buttons::{HEIGHT, WIDTH, with};
 use crate::common::{FILTER, OK, ROTO, clean, host, kept, p, rendered};
 use rototoon::geometry::{Point, polyline};
 use rototoon::pipeline;
 use rototoon::project::Document;
-use rototoon::scene::{Footage, Part, Scene, Silent};
+use rototoon::scene::{Part, Silent};
 use rototoon::track::TrackOptions;
 use rototoon_ofx_host::{Bounds, ClipSettings, Effect, Host};
 
-const WIDTH: usize = 160;
-const HEIGHT: usize = 120;
 const LAST: i32 = 4;
 /// The first frame with a drawing. Those before are empty cels.
 const FIRST: i32 = 1;
@@ -38,17 +37,7 @@ fn picture(frame: i32, pixel: impl Fn(f32) -> [f32; 4]) -> Vec<f32> {
 }
 
 fn document() -> Document {
-    let part = Part { name: "ring".into(), closed: true, keys: [(FIRST, ring(FIRST))].into(), ..Part::default() };
-    let footage = Footage {
-        pattern: "%d.png".into(),
-        first: 0,
-        last: LAST,
-        fps: 24.0,
-        width: WIDTH,
-        height: HEIGHT,
-        held: false,
-    };
-    Document::new(Scene { footage, parts: vec![part] })
+    with(Part { name: "ring".into(), closed: true, keys: [(FIRST, ring(FIRST))].into(), ..Part::default() }, LAST)
 }
 
 fn node<'a>(host: &'a Host, id: &str, pixel: impl Fn(f32) -> [f32; 4]) -> Effect<'a> {
